@@ -1,0 +1,38 @@
+"""
+The algorithms, free of ROS: spaces, walks on them, and planners.
+
+>>> space = GridSpace.from_blocked(np.zeros((20, 20), bool), resolution=0.5)
+>>> plan(space, start=(1, 1), goal=(9, 9), seed=0).status
+<PlannerStatus.SOLVED: 'a path was found'>
+"""
+
+from hnr_planner.core.errors import HnrError, RequestError, SpaceError
+from hnr_planner.core.planning.algorithms import ALGORITHMS
+from hnr_planner.core.planning.hit_and_run import HitAndRun
+from hnr_planner.core.planning.plan import plan
+from hnr_planner.core.planning.result import FirstSolution, PlannerStatus, PlanResult
+from hnr_planner.core.planning.rrt import RRT
+from hnr_planner.core.planning.simplify import simplify
+from hnr_planner.core.sampling.sample import sample, WALKS
+from hnr_planner.core.spaces import Chord, GridSpace, Space
+from hnr_planner.core.warm_up import warm_up
+
+__all__ = [
+    'ALGORITHMS',
+    'RRT',
+    'WALKS',
+    'Chord',
+    'FirstSolution',
+    'GridSpace',
+    'HitAndRun',
+    'HnrError',
+    'PlanResult',
+    'PlannerStatus',
+    'RequestError',
+    'Space',
+    'SpaceError',
+    'plan',
+    'sample',
+    'simplify',
+    'warm_up',
+]

@@ -1,0 +1,75 @@
+"""Checks at the door: they turn input into clean numbers once, or say the value and the rule."""
+
+import math
+import operator
+import secrets
+from typing import Any
+
+from hnr_planner.core.errors import RequestError
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+Floats = NDArray[np.float64]
+
+
+def check_points(name: str, points: ArrayLike, dim: int) -> Floats:
+    """Return ``points`` (k, dim) or (dim,) as a fresh float array, or raise RequestError."""
+    try:
+        array = np.array(points, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise RequestError(f'{name} must be numbers, got {points!r}') from None
+    if array.ndim not in (1, 2) or array.shape[-1] != dim:
+        raise RequestError(f'{name} must have shape (k, {dim}) or ({dim},), got {array.shape}')
+    return array
+
+
+def check_point(name: str, point: ArrayLike, dim: int) -> Floats:
+    """Return ``point`` (dim,) as a fresh array of finite floats, or raise RequestError."""
+    array = check_points(name, point, dim)
+    if array.ndim != 1:
+        raise RequestError(f'{name} must have shape ({dim},), got {array.shape}')
+    if not np.isfinite(array).all():
+        raise RequestError(f'{name} must be finite, got {array.tolist()}')
+    return array
+
+
+def check_direction(name: str, direction: ArrayLike, dim: int) -> Floats:
+    """Return ``direction`` (dim,), finite and not zero, or raise RequestError."""
+    array = check_point(name, direction, dim)
+    if not array.any():
+        raise RequestError(f'{name} must not be zero, got {array.tolist()}')
+    return array
+
+
+def check_number(name: str, value: Any, lower: float, upper: float = math.inf) -> float:
+    """Return ``value`` as a float in [lower, upper], or raise RequestError."""
+    try:
+        number = float(value)
+    except (TypeError, ValueError):
+        raise RequestError(f'{name} must be a number, got {value!r}') from None
+    if not lower <= number <= upper:
+        raise RequestError(f'{name} must be in {lower:g}..{upper:g}, got {number!r}')
+    return number
+
+
+def check_count(name: str, value: Any, lower: int) -> int:
+    """Return ``value`` as an int of at least ``lower``, or raise RequestError."""
+    try:
+        count = operator.index(value)
+    except TypeError:
+        raise RequestError(f'{name} must be a whole number, got {value!r}') from None
+    if count < lower:
+        raise RequestError(f'{name} must be at least {lower}, got {count}')
+    return count
+
+
+def check_choice(name: str, value: Any, choices: tuple[str, ...]) -> str:
+    """Return ``value`` when it is one of ``choices``, or raise RequestError."""
+    if value not in choices:
+        raise RequestError(f'{name} must be one of {", ".join(choices)}, got {value!r}')
+    return str(value)
+
+
+def check_seed(seed: Any) -> int:
+    """Return ``seed`` as an int of at least 0, a fresh one for None, or raise RequestError."""
+    return secrets.randbelow(2**31) if seed is None else check_count('seed', seed, 0)

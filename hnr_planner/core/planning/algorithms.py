@@ -1,0 +1,44 @@
+"""Planners by name."""
+
+from dataclasses import fields
+from typing import Any
+
+from hnr_planner.core.checks import check_choice
+from hnr_planner.core.errors import RequestError
+from hnr_planner.core.planning.hit_and_run import HitAndRun
+from hnr_planner.core.planning.rrt import RRT
+from hnr_planner.core.planning.search import Planner
+
+#: What ``auto`` stands for.
+BEST = 'rrt'
+
+_PLANNERS: dict[str, type[HitAndRun] | type[RRT]] = {
+    planner.name: planner for planner in (HitAndRun, RRT)
+}
+
+#: Names that ``plan`` takes.
+ALGORITHMS = ('auto', *_PLANNERS)
+
+
+def make_planner(algorithm: str | Planner, settings: dict[str, Any]) -> Planner:
+    """
+    Return the planner that ``algorithm`` means, built with ``settings`` where it is a name.
+
+    Raises
+    ------
+    RequestError
+        When the name or a setting is unknown, or settings come beside a planner value.
+
+    """
+    if not isinstance(algorithm, str):
+        if settings:
+            raise RequestError(f'settings {sorted(settings)} go with the name of a planner only')
+        return algorithm
+    name = check_choice('algorithm', algorithm, ALGORITHMS)
+    kind = _PLANNERS[BEST if name == 'auto' else name]
+    known = [field.name for field in fields(kind)]
+    for setting in settings:
+        if setting not in known:
+            has = ', '.join(known) or 'no settings'
+            raise RequestError(f'{kind.name} has no setting {setting!r}; it has {has}')
+    return kind(**settings)

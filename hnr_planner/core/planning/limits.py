@@ -1,0 +1,76 @@
+"""What ends a search that does not end by itself: the clock, a count, or a person."""
+
+from dataclasses import dataclass
+import math
+import time
+from typing import Protocol
+
+from hnr_planner.core.planning.result import PlannerStatus
+from hnr_planner.core.planning.search import Search
+
+#: Transitions in the first batch; later ones last about as long as the bounds below [s].
+FIRST_BATCH = 64
+BATCH_TIME = (0.25e-3, 0.5e-3)
+
+
+class Event(Protocol):
+    """Something that can be set from another thread, as ``threading.Event``."""
+
+    def is_set(self) -> bool:
+        """Say whether it was set."""
+
+
+@dataclass(frozen=True)
+class Limits:
+    """
+    Limits on the work for one request.
+
+    Attributes
+    ----------
+    deadline : float
+        End of the time allowed, on the clock of ``time.perf_counter`` [s].
+    max_iterations : float
+        Transitions allowed for one search; may be inf.
+    cancel : Event or None
+        Ends everything once it is set.
+
+    """
+
+    deadline: float
+    max_iterations: float = math.inf
+    cancel: Event | None = None
+
+    def stop(self) -> PlannerStatus | None:
+        """Say why work has to stop now; None while it may go on."""
+        if self.cancel is not None and self.cancel.is_set():
+            return PlannerStatus.CANCELLED
+        if time.perf_counter() >= self.deadline:
+            return PlannerStatus.TIMEOUT
+        return None
+
+    def run(self, search: Search) -> PlannerStatus:
+        """
+        Advance a search until it is solved or a limit is met, and say which.
+
+        Between batches the limits are looked at. The size of the batches follows the clock so that
+        this happens about every half a millisecond; it has no effect on what is found.
+        """
+        batch = FIRST_BATCH
+        while not search.solved:
+            stopped = self.stop()
+            if stopped is not None:
+                return stopped
+            left = self.max_iterations - search.iterations
+            if left <= 0:
+                return PlannerStatus.ITERATION_LIMIT
+            began = time.perf_counter()
+            search.advance(int(min(batch, left)))
+            batch = _next_batch(batch, time.perf_counter() - began)
+        return PlannerStatus.SOLVED
+
+
+def _next_batch(batch: int, seconds: float) -> int:
+    shortest, longest = BATCH_TIME
+    if seconds < shortest:
+        return 2 * batch
+    return max(1, batch // 2) if seconds > longest else batch

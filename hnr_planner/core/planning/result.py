@@ -1,0 +1,87 @@
+"""What ``plan`` answers."""
+
+from dataclasses import dataclass
+from enum import Enum
+from typing import NamedTuple
+
+from hnr_planner.core.checks import Floats
+import numpy as np
+from numpy.typing import NDArray
+
+
+class PlannerStatus(Enum):
+    """How a request ended; the value says it in words."""
+
+    SOLVED = 'a path was found'
+    INVALID_START = 'the start is not free'
+    INVALID_GOAL = 'the goal is not free'
+    UNREACHABLE = 'no path exists: start and goal lie in different parts of free space'
+    TIMEOUT = 'the time limit passed before a path was found'
+    ITERATION_LIMIT = 'the limit on transitions was reached before a path was found'
+    CANCELLED = 'the search was cancelled'
+
+
+class FirstSolution(NamedTuple):
+    """The first path, before anything made it shorter: time to it [s] and its length [m]."""
+
+    elapsed: float
+    length: float
+
+
+@dataclass(frozen=True)
+class PlanResult:
+    """
+    Answer to a planning request, in the caller's frame and units.
+
+    Attributes
+    ----------
+    status : PlannerStatus
+    message : str
+        Why, in words, with the values.
+    planner : str
+        Name of the planner that searched.
+    path : (m, dim)
+        Vertices from start to goal; (0, dim) when there is none.
+    length : float
+        Length of the path [m]; inf when there is none.
+    samples : (k, dim)
+        The start, then one row for each accepted vertex of the search.
+    parents : (k,) int
+        Row of ``samples`` that each was reached from; -1 for the start.
+    iterations : int
+        Transitions handled: proposals inside the space, whatever became of them.
+    counts : dict
+        What else the search counted, by name.
+    elapsed : float
+        Time of the whole call [s], compilation aside.
+    seed : int
+        The seed that gives this result again.
+    cut_by_time : bool
+        Whether a clock ended something: only then may the same seed give another result.
+    first_solution : FirstSolution or None
+
+    """
+
+    status: PlannerStatus
+    message: str
+    planner: str
+    path: Floats
+    length: float
+    samples: Floats
+    parents: NDArray[np.int64]
+    iterations: int
+    counts: dict[str, int]
+    elapsed: float
+    seed: int
+    cut_by_time: bool
+    first_solution: FirstSolution | None
+
+    @property
+    def paths(self) -> tuple[Floats, ...]:
+        """All paths found, the shortest first."""
+        return (self.path,) if len(self.path) else ()
+
+
+def path_length(path: Floats) -> float:
+    """Length of a path (m, dim)."""
+    return float(np.linalg.norm(np.diff(path, axis=0), axis=1).sum())

@@ -1,0 +1,112 @@
+"""
+What a planner is: a value that starts searches, which advance by counts and know no clock.
+
+A planner is a frozen dataclass whose fields are its settings. Its ``start`` gives a search, whose
+``advance(n)`` handles at most ``n`` further transitions. Batches may be of any size: the same
+problem and generator give the same samples and the same path to the last bit. All arrays here are
+in the kernel frame of the space.
+"""
+
+from typing import Any, NamedTuple, Protocol
+
+from hnr_planner.core.checks import Floats
+from hnr_planner.core.kernels import kernel
+from hnr_planner.core.spaces.primitives import sees
+import numpy as np
+from numpy.typing import NDArray
+
+
+class Problem(NamedTuple):
+    """
+    A planning problem in the kernel frame of a space; kernels take it as it is.
+
+    Attributes
+    ----------
+    space : NamedTuple
+        The compiled space.
+    lower, upper : (dim,)
+        A box around it.
+    start, goal : (dim,)
+        Start and centre of the goal region.
+    goal_radius : float
+        Radius of the goal region; 0 when the path has to end exactly at the goal.
+    margin : float
+        Distance from a chord's end at which one stops.
+
+    """
+
+    space: Any
+    lower: Floats
+    upper: Floats
+    start: Floats
+    goal: Floats
+    goal_radius: float
+    margin: float
+
+
+@kernel
+def reaches_goal(problem, x):
+    """Say whether a sample ends the search: it lies in the region, or it sees an exact goal."""
+    if problem.goal_radius == 0.0:
+        return sees(problem.space, x, problem.goal)
+    squared = 0.0
+    for i in range(len(x)):
+        squared += (x[i] - problem.goal[i]) ** 2
+    return squared <= problem.goal_radius**2
+
+
+class Search(Protocol):
+    """A search under way."""
+
+    @property
+    def iterations(self) -> int:
+        """Transitions handled: proposals drawn from the space, whatever became of them."""
+
+    @property
+    def solved(self) -> bool:
+        """Whether the newest sample reaches the goal."""
+
+    @property
+    def samples(self) -> Floats:
+        """Start and accepted vertices (k, dim), oldest first."""
+
+    @property
+    def parents(self) -> NDArray[np.int64]:
+        """Index (k,) of the sample that each was reached from; -1 for the start."""
+
+    @property
+    def counts(self) -> dict[str, int]:
+        """What else was counted, by name."""
+
+    def advance(self, n_iterations: int) -> None:
+        """Handle at most ``n_iterations`` further transitions, fewer once solved."""
+
+
+class Planner(Protocol):
+    """A planner: a name, and how to start a search."""
+
+    @property
+    def name(self) -> str:
+        """Name in ``plan``'s table of algorithms."""
+
+    def start(self, problem: Problem, rng: np.random.Generator, scale: float) -> Search:
+        """Start a search; ``scale`` is the caller's units [m] in one of the kernel frame."""
+
+
+def branch(search: Search) -> Floats:
+    """Return the samples (m, dim) from the start to the newest one, along the parents."""
+    parents, k = search.parents, len(search.parents) - 1
+    indices = []
+    while k >= 0:
+        indices.append(k)
+        k = int(parents[k])
+    return search.samples[indices[::-1]]
+
+
+def with_room(array: NDArray[Any], rows: int) -> NDArray[Any]:
+    """Return ``array``, or a copy of at least twice the length when it has fewer than ``rows``."""
+    if len(array) >= rows:
+        return array
+    larger = np.empty((max(rows, 2 * len(array)), *array.shape[1:]), dtype=array.dtype)
+    larger[: len(array)] = array
+    return larger

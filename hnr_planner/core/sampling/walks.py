@@ -1,0 +1,63 @@
+"""
+Steps of random walks whose law in the long run is uniform on the space.
+
+A step is a small pure kernel: from the compiled space, a free point ``x`` and a generator it
+writes the next point into ``y``. It returns how many draws it threw away because they rounded onto
+the boundary: points of the space stay points of the space.
+"""
+
+import math
+
+from hnr_planner.core.kernels import kernel
+from hnr_planner.core.spaces.primitives import contains, leave
+import numpy as np
+
+#: After so many draws in a row on the boundary the chord holds no other number: the walk stays.
+REDRAWS_MAX = 100
+
+
+@kernel
+def hit_and_run_step(space, x, rng, y):
+    """Take a step of Hit-and-Run: uniform direction, uniform point of its chord (paper, 1)."""
+    return draw_on_chord(space, x, draw_direction(rng, len(x)), rng, y)
+
+
+@kernel
+def coordinate_hit_and_run_step(space, x, rng, y):
+    """Take a step of Hit-and-Run along one of the axes, each as likely as the others."""
+    u = np.zeros(len(x))
+    u[math.floor(rng.random() * len(x))] = 1.0
+    return draw_on_chord(space, x, u, rng, y)
+
+
+@kernel
+def draw_direction(rng, dim):
+    """Draw a direction uniformly from the unit sphere."""
+    u = np.empty(dim)
+    if dim == 2:
+        angle = 2.0 * math.pi * rng.random()
+        u[0], u[1] = math.cos(angle), math.sin(angle)
+        return u
+    squared = 0.0
+    while squared == 0.0:
+        for i in range(dim):
+            u[i] = rng.standard_normal()
+            squared += u[i] * u[i]
+    for i in range(dim):
+        u[i] /= math.sqrt(squared)
+    return u
+
+
+@kernel
+def draw_on_chord(space, x, u, rng, y):
+    """Draw ``y`` uniformly from the chord of ``x`` along ``u``; return the draws thrown away."""
+    upper = leave(space, x, u, 0.0, math.inf)
+    lower = -leave(space, x, -u, 0.0, math.inf)
+    for redraws in range(REDRAWS_MAX):
+        s = lower + (upper - lower) * rng.random()
+        for i in range(len(x)):
+            y[i] = x[i] + s * u[i]
+        if lower < s < upper and contains(space, y):
+            return redraws
+    y[:] = x
+    return REDRAWS_MAX

@@ -1,0 +1,113 @@
+"""
+Distance to the occupied squares of a grid, from points and along paths: exact.
+
+Squares are looked for in rings of cells around the middle of a short piece of the path. The first
+ring is the one where the distance field says that there is something; the last is the one beyond
+which no square can be nearer to the piece than the nearest so far.
+
+Arrays are those of the kernel frame: ``wall_distance`` (rows, cols) is the distance in king's
+moves to the nearest occupied cell; distances are in cells.
+"""
+
+import math
+
+from hnr_planner.core.kernels import kernel
+import numpy as np
+
+#: Pieces of a path are about as long as the clearance, but not shorter than this [cells].
+SHORTEST_PIECE = 2.0
+
+
+@kernel
+def point_clearance(wall_distance, points):
+    """Distances (k,) from points (k, 2) to the nearest occupied square; inf without one."""
+    clearance = np.empty(len(points))
+    for k in range(len(points)):
+        x, y = points[k]
+        clearance[k] = _piece_clearance(wall_distance, x, y, x, y, math.inf)
+    return clearance
+
+
+@kernel
+def path_clearance(wall_distance, path):
+    """Least distance from a path (m, 2) to an occupied square; inf without one."""
+    x, y = path[0]
+    least = _piece_clearance(wall_distance, x, y, x, y, math.inf)
+    for k in range(1, len(path)):
+        ax, ay = path[k - 1]
+        dx, dy = path[k, 0] - ax, path[k, 1] - ay
+        length, done = math.hypot(dx, dy), 0.0
+        while done < length:
+            end = min(done + max(least, SHORTEST_PIECE), length)
+            s, t = done / length, end / length
+            least = _piece_clearance(
+                wall_distance, ax + s * dx, ay + s * dy, ax + t * dx, ay + t * dy, least
+            )
+            done = end
+    return least
+
+
+@kernel
+def _piece_clearance(wall_distance, ax, ay, bx, by, least):
+    """Distance from the segment a-b to the nearest occupied square, or ``least`` if less."""
+    rows, columns = wall_distance.shape
+    half = math.hypot(bx - ax, by - ay) / 2.0
+    column = min(max(math.floor((ax + bx) / 2.0), 0), columns - 1)
+    row = min(max(math.floor((ay + by) / 2.0), 0), rows - 1)
+    ring = int(wall_distance[row, column])
+    farthest = max(column, columns - 1 - column, row, rows - 1 - row)
+    # A square in this ring is at least ring - 1 from the middle of the segment.
+    while ring <= farthest and ring - 1 - half < least:
+        for r in range(max(row - ring, 0), min(row + ring, rows - 1) + 1):
+            stride = 1 if abs(r - row) == ring or ring == 0 else 2 * ring
+            for c in range(column - ring, column + ring + 1, stride):
+                if 0 <= c < columns and wall_distance[r, c] == 0:
+                    least = min(least, _square_distance(ax, ay, bx, by, c, r))
+        ring += 1
+    return least
+
+
+@kernel
+def _square_distance(ax, ay, bx, by, column, row):
+    """Distance between the segment a-b and the square of a cell."""
+    if _crosses(ax, ay, bx, by, column, row):
+        return 0.0
+    # Apart, the nearest pair has an end of the segment or a corner of the square in it.
+    nearest = min(
+        math.hypot(_outside(ax, column), _outside(ay, row)),
+        math.hypot(_outside(bx, column), _outside(by, row)),
+    )
+    for corner in range(4):
+        x, y = column + corner % 2, row + corner // 2
+        nearest = min(nearest, _point_to_segment(x, y, ax, ay, bx, by))
+    return nearest
+
+
+@kernel
+def _outside(x, cell):
+    """How far ``x`` is outside the interval [cell, cell + 1]."""
+    return max(cell - x, x - (cell + 1), 0.0)
+
+
+@kernel
+def _point_to_segment(x, y, ax, ay, bx, by):
+    dx, dy = bx - ax, by - ay
+    squared = dx * dx + dy * dy
+    s = 0.0
+    if squared > 0.0:
+        s = min(max(((x - ax) * dx + (y - ay) * dy) / squared, 0.0), 1.0)
+    return math.hypot(ax + s * dx - x, ay + s * dy - y)
+
+
+@kernel
+def _crosses(ax, ay, bx, by, column, row):
+    """Say whether the segment meets the square: the parts of it inside both slabs overlap."""
+    first, last = 0.0, 1.0
+    for a, d, cell in ((ax, bx - ax, column), (ay, by - ay, row)):
+        if d == 0.0:
+            if _outside(a, cell) > 0.0:
+                return False
+        else:
+            s, t = (cell - a) / d, (cell + 1 - a) / d
+            first, last = max(first, min(s, t)), min(last, max(s, t))
+    return first <= last

@@ -1,0 +1,294 @@
+"""An occupancy grid as a space: what is free, what is connected, how far the walls are."""
+
+from dataclasses import dataclass
+from typing import Any, Literal
+
+from hnr_planner.core.checks import check_point, check_points, Floats
+from hnr_planner.core.errors import SpaceError
+from hnr_planner.core.spaces.clearance import path_clearance, point_clearance
+from hnr_planner.core.spaces.grid_fields import components, free_distance, inflate
+from hnr_planner.core.spaces.grid_frame import GridFrame
+from hnr_planner.core.spaces.grid_traversal import GridData
+from hnr_planner.core.spaces.space import Space
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+Bools = NDArray[np.bool_]
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class GridSpace(Space):
+    """
+    The free points of an occupancy grid: ``GridSpace.from_occupancy`` or ``.from_blocked``.
+
+    Row 0 of every array is the row nearest the origin, points are (x, y) in metres in the map
+    frame, and the grid's frame lies in it at ``origin`` (x, y, yaw). Blocked cells are closed and
+    everything outside the grid is blocked.
+
+    Attributes
+    ----------
+    frame : GridFrame
+        Where the grid lies: resolution and origin.
+    robot_radius : float
+        Radius [m] by which the occupied cells were inflated.
+    data : GridData
+        The compiled grid.
+
+    """
+
+    frame: GridFrame
+    robot_radius: float
+    data: GridData
+    _wall_distance: NDArray[np.uint8]
+    _labels: NDArray[np.int32]
+
+    dim = 2
+
+    @classmethod
+    def from_occupancy(
+        cls,
+        data: ArrayLike,
+        resolution: float,
+        origin: tuple[float, float, float] = (0.0, 0.0, 0.0),
+        *,
+        robot_radius: float = 0.0,
+        occupied_threshold: int = 65,
+        unknown: Literal['blocked', 'free'] = 'blocked',
+    ) -> 'GridSpace':
+        """
+        Build the space of a ``nav_msgs/OccupancyGrid``.
+
+        Parameters
+        ----------
+        data : (rows, cols) integers
+            Occupancy: 0..100, -1 for unknown; values outside -1..100 count as unknown.
+        resolution : float
+            Side of a cell [m].
+        origin : (x, y, yaw)
+            Pose of the outer corner of cell [0, 0] in the map frame [m, m, rad].
+        robot_radius : float
+            A cell is blocked when its centre is within this distance [m] of the centre of an
+            occupied cell. Unknown cells and the map's edge block, but are not inflated.
+        occupied_threshold : int
+            Cells of at least this value, 1..100, are occupied.
+        unknown : 'blocked' or 'free'
+            What unknown cells are.
+
+        Raises
+        ------
+        SpaceError
+            When one of the arguments describes no grid; the message names it.
+
+        """
+        values = _check_cells(data)
+        if not np.issubdtype(values.dtype, np.integer):
+            raise SpaceError(f'data must be whole numbers, got an array of {values.dtype}')
+        if not 1 <= occupied_threshold <= 100:
+            raise SpaceError(f'occupied_threshold must be in 1..100, got {occupied_threshold!r}')
+        if unknown not in ('blocked', 'free'):
+            raise SpaceError(f"unknown must be 'blocked' or 'free', got {unknown!r}")
+        out_of_range = (values < 0) | (values > 100)
+        occupied = (values >= occupied_threshold) & ~out_of_range
+        closed = out_of_range if unknown == 'blocked' else np.zeros_like(occupied)
+        return cls._build(occupied, closed, resolution, origin, robot_radius)
+
+    @classmethod
+    def from_blocked(
+        cls,
+        blocked: ArrayLike,
+        resolution: float = 1.0,
+        origin: tuple[float, float, float] = (0.0, 0.0, 0.0),
+        *,
+        robot_radius: float = 0.0,
+    ) -> 'GridSpace':
+        """Build the space whose occupied cells are ``blocked`` (rows, cols) bool; see above."""
+        occupied = _check_cells(blocked).astype(bool)
+        return cls._build(occupied, np.zeros_like(occupied), resolution, origin, robot_radius)
+
+    @classmethod
+    def _build(
+        cls, occupied: Bools, closed: Bools, resolution: float, origin: ArrayLike, radius: float
+    ) -> 'GridSpace':
+        frame = GridFrame.checked(resolution, origin, occupied.shape)
+        radius = _check_radius(radius)
+        blocked = inflate(occupied, radius / frame.resolution) | closed
+        return cls(
+            frame=frame,
+            robot_radius=radius,
+            data=GridData(free_distance(blocked)),
+            _wall_distance=free_distance(occupied, closed_rim=False),
+            _labels=components(~blocked),
+        )
+
+    # -- where it lies ---------------------------------------------------------------------------
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Rows and columns."""
+        return self.frame.shape
+
+    @property
+    def resolution(self) -> float:
+        """Side of a cell [m]."""
+        return self.frame.resolution
+
+    @property
+    def origin(self) -> tuple[float, float, float]:
+        """Pose (x, y, yaw) of the grid in the map frame [m, m, rad]."""
+        return self.frame.origin
+
+    @property
+    def scale(self) -> float:
+        """Metres in one unit of the kernel frame, which is one cell."""
+        return self.frame.resolution
+
+    @property
+    def bounds(self) -> tuple[Floats, Floats]:
+        """Lower and upper corner (2,) [m] of a box around the grid, in the map frame."""
+        corners = self.from_kernel(self.frame.corners)
+        return corners.min(axis=0), corners.max(axis=0)
+
+    @property
+    def kernel_bounds(self) -> tuple[Floats, Floats]:
+        """Lower and upper corner (2,) of the grid in the kernel frame."""
+        return self.frame.corners[0], self.frame.corners[2]
+
+    @property
+    def margin(self) -> float:
+        """Distance from a chord's end at which one stops, never below what coordinates resolve."""
+        return max(super().margin, 8.0 * self.frame.rounding)
+
+    def to_kernel(self, points: Floats) -> Floats:
+        """Bring points (..., 2) [m] of the map frame into cells of the kernel frame."""
+        return self.frame.to_cells(points)
+
+    def from_kernel(self, points: Floats) -> Floats:
+        """Bring points (..., 2) in cells of the kernel frame into the map frame [m]."""
+        return self.frame.to_map(points)
+
+    def turn_to_kernel(self, directions: Floats) -> Floats:
+        """Turn directions (..., 2) of the map frame into the grid's."""
+        return self.frame.turn_to_grid(directions)
+
+    def cell_centres(self, rows: ArrayLike, columns: ArrayLike) -> Floats:
+        """Centres (k, 2) [m] of the cells at ``rows`` and ``columns`` (k,), in the map frame."""
+        cells = np.stack([np.asarray(columns), np.asarray(rows)], axis=-1)
+        return self.frame.to_map(cells + (self.frame.RIM + 0.5))
+
+    # -- what is free ----------------------------------------------------------------------------
+
+    @property
+    def blocked(self) -> Bools:
+        """Cells (rows, cols) that no path may touch."""
+        return self.data.free_distance[1:-1, 1:-1] == 0
+
+    @property
+    def occupied(self) -> Bools:
+        """Cells (rows, cols) that the map says are occupied, before inflation."""
+        return self._wall_distance[1:-1, 1:-1] == 0
+
+    def why_not_free(self, point: ArrayLike) -> str:
+        """Say in words why ``point`` (2,) [m] is not free."""
+        column, row = np.floor(self.frame.to_cells(check_point('point', point, 2))).astype(int) - 1
+        rows, columns = self.shape
+        if not (0 <= row < rows and 0 <= column < columns):
+            lower, upper = self.bounds
+            return (
+                f'outside the map, which spans x {lower[0]:g}..{upper[0]:g}, '
+                f'y {lower[1]:g}..{upper[1]:g} m'
+            )
+        cell = f'cell [{row}, {column}]'
+        if self.occupied[row, column]:
+            return f'inside an obstacle: {cell} is occupied'
+        if not self.blocked[row, column]:
+            return f'on the edge of a blocked cell beside {cell}'
+        if self._is_near_wall(row, column):
+            return f'within the robot radius of {self.robot_radius:g} m of an obstacle, in {cell}'
+        return f'in unknown space: {cell} is unknown'
+
+    def _is_near_wall(self, row: int, column: int) -> bool:
+        reach = int(self.robot_radius / self.resolution) + 1
+        top, left = max(row - reach, 0), max(column - reach, 0)
+        window = self.occupied[top : row + reach + 1, left : column + reach + 1]
+        return bool(inflate(window, self.robot_radius / self.resolution)[row - top, column - left])
+
+    # -- what is connected -----------------------------------------------------------------------
+
+    def connected(self, a: ArrayLike, b: ArrayLike) -> bool:
+        """
+        Say whether a path joins two free points, exactly.
+
+        Free cells that share an edge are connected; those that share only a corner are not, since
+        the corner touches the two obstacles beside it.
+        """
+        label = self._label(check_point('a', a, 2))
+        return label != 0 and label == self._label(check_point('b', b, 2))
+
+    def reachable(self, start: Floats, goal: Floats, radius: float) -> bool:
+        """Say whether a path leads from ``start`` to ``goal``, or within ``radius`` [m] of it."""
+        if self.connected(start, goal):
+            return True
+        return radius > 0.0 and self.nearest_reachable(start, goal, radius) is not None
+
+    def largest_component(self) -> Bools:
+        """Return the cells (rows, cols) of the largest connected part of free space."""
+        sizes = np.bincount(self._labels.ravel())
+        sizes[0] = 0
+        if not sizes.any():
+            return np.zeros(self.shape, dtype=bool)
+        return self._labels == sizes.argmax()
+
+    def nearest_reachable(self, start: ArrayLike, goal: ArrayLike, radius: float) -> Floats | None:
+        """
+        Return the point of the start's component nearest to ``goal``; None beyond ``radius`` [m].
+
+        Free space is open, so a nearest point on the rim of a cell is taken ``margin`` inside.
+        """
+        label = self._label(check_point('start', start, 2))
+        target = self.frame.to_cells(check_point('goal', goal, 2))
+        cells = self._cells_around(label, target, radius / self.scale)
+        nearest = np.clip(target, cells + self.margin, cells + 1 - self.margin)
+        offsets = np.hypot(*(nearest - target).T)
+        if label == 0 or not (offsets <= radius / self.scale).any():
+            return None
+        return self.frame.to_map(nearest[offsets.argmin()])
+
+    def _label(self, point: Floats) -> int:
+        """Component of a point: 0 where it is not free."""
+        if not self.contains(point):
+            return 0
+        column, row = np.floor(self.frame.to_cells(point)).astype(int) - self.frame.RIM
+        return int(self._labels[row, column])
+
+    def _cells_around(self, label: int, target: Floats, reach: float) -> Floats:
+        """Lower corners (k, 2), kernel frame, of a component's cells in a window of ``reach``."""
+        rim = self.frame.RIM
+        left, bottom = np.maximum(np.floor(target - reach) - rim, 0).astype(int)
+        right, top = np.maximum(np.floor(target + reach) + 1 - rim, 0).astype(int)
+        rows, columns = np.nonzero(self._labels[bottom:top, left:right] == label)
+        return np.stack([columns + left + rim, rows + bottom + rim], axis=1).astype(float)
+
+    # -- how far the walls are -------------------------------------------------------------------
+
+    def clearance(self, points: ArrayLike) -> Floats:
+        """Distance (k,) [m] from points (k, 2) to the nearest occupied square; inf without one."""
+        cells = self.frame.to_cells(np.atleast_2d(check_points('points', points, 2)))
+        return point_clearance(self._wall_distance, cells) * self.scale
+
+    def path_clearance(self, path: ArrayLike) -> float:
+        """Return the least clearance [m] along the whole of a path (m, 2); inf without walls."""
+        cells = self.frame.to_cells(np.atleast_2d(check_points('path', path, 2)))
+        return float(path_clearance(self._wall_distance, cells)) * self.scale
+
+
+def _check_cells(cells: ArrayLike) -> NDArray[Any]:
+    array = np.asarray(cells)
+    if array.ndim != 2 or array.size == 0:
+        raise SpaceError(f'a grid needs rows and columns, got an array of shape {array.shape}')
+    return array
+
+
+def _check_radius(radius: float) -> float:
+    if not 0.0 <= radius < np.inf:
+        raise SpaceError(f'robot_radius must be at least 0 and finite, got {radius!r}')
+    return float(radius)

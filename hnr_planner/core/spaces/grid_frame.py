@@ -1,0 +1,88 @@
+"""Where a grid lies in the map: between metres of the map frame and cells of the kernel frame."""
+
+from dataclasses import dataclass
+from functools import cached_property
+import math
+from typing import ClassVar
+
+from hnr_planner.core.checks import Floats
+from hnr_planner.core.errors import SpaceError
+import numpy as np
+from numpy.typing import ArrayLike
+
+#: Coordinates must resolve this part of a cell, or free and blocked cannot be told apart.
+FINEST = 1e-6
+
+
+@dataclass(frozen=True)
+class GridFrame:
+    """
+    Frame of a grid: origin and yaw are applied here and nowhere else.
+
+    The kernel frame has one unit for one cell. It starts one cell before the grid, at the corner
+    of a rim of blocked cells, so that every ray ends inside the arrays.
+
+    Attributes
+    ----------
+    resolution : float
+        Side of a cell [m].
+    origin : (x, y, yaw)
+        Pose of the outer corner of cell [0, 0] in the map frame [m, m, rad].
+    shape : (rows, columns)
+        Cells of the grid, without the rim.
+
+    """
+
+    resolution: float
+    origin: tuple[float, float, float]
+    shape: tuple[int, int]
+
+    RIM: ClassVar[int] = 1
+
+    @classmethod
+    def checked(cls, resolution: float, origin: ArrayLike, shape: tuple[int, ...]) -> 'GridFrame':
+        """Build a frame from a caller's numbers, or raise SpaceError naming the wrong one."""
+        if not 0.0 < resolution < math.inf:
+            raise SpaceError(f'resolution must be above 0 and finite, got {resolution!r}')
+        pose = np.asarray(origin, dtype=np.float64)
+        if pose.shape != (3,) or not np.isfinite(pose).all():
+            raise SpaceError(f'origin must be three finite numbers (x, y, yaw), got {origin!r}')
+        frame = cls(float(resolution), tuple(pose.tolist()), (int(shape[0]), int(shape[1])))
+        if not frame.rounding <= FINEST:
+            raise SpaceError(
+                f'origin {frame.origin} is too far away: coordinates there are rounded to '
+                f'{frame.rounding:.2g} of a cell of {resolution:g} m, more than {FINEST:g}'
+            )
+        return frame
+
+    @cached_property
+    def rounding(self) -> float:
+        """Spacing of the floating-point numbers at the far end of the map, in cells."""
+        extent = math.hypot(*self.shape) * self.resolution
+        farthest = max(abs(self.origin[0]), abs(self.origin[1])) + extent
+        return float(np.spacing(farthest)) / self.resolution
+
+    @cached_property
+    def corners(self) -> Floats:
+        """Corners (4, 2) of the grid in the kernel frame, counter-clockwise from the origin."""
+        rows, columns = self.shape
+        unit = np.array([(0, 0), (1, 0), (1, 1), (0, 1)])
+        return unit * np.array([columns, rows], dtype=np.float64) + self.RIM
+
+    def to_cells(self, points: Floats) -> Floats:
+        """Bring points (..., 2) [m] of the map frame into the kernel frame."""
+        return self.turn_to_grid(points - self.origin[:2]) / self.resolution + self.RIM
+
+    def to_map(self, cells: Floats) -> Floats:
+        """Bring points (..., 2) of the kernel frame into the map frame [m]."""
+        return ((cells - self.RIM) * self.resolution) @ self._turn.T + self.origin[:2]
+
+    def turn_to_grid(self, directions: Floats) -> Floats:
+        """Turn directions (..., 2) of the map frame into the grid's frame."""
+        return directions @ self._turn
+
+    @cached_property
+    def _turn(self) -> Floats:
+        """Rotation by yaw: columns are the grid's axes in the map frame."""
+        cos, sin = math.cos(self.origin[2]), math.sin(self.origin[2])
+        return np.array([(cos, -sin), (sin, cos)])

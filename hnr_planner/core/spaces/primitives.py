@@ -1,0 +1,87 @@
+"""
+The primitives: what a compiled space answers, and all that walks and planners ask.
+
+A compiled space is a NamedTuple of arrays. For its type two kernels are registered:
+
+``contains(space, x) -> bool``
+    Whether ``x`` is a free point.
+``leave(space, x, u, t, enough) -> float``
+    The first parameter ``s >= t`` at which the line ``x + s u`` leaves the space; ``t`` itself
+    where the line is out already. Once the line is known to stay inside until ``enough`` the
+    search may stop there: any value above ``enough`` is an answer.
+
+Compiled code calls the two by these names for any space: numba picks the kernel by the type of the
+NamedTuple. Interpreted code reaches the same kernels interpreted, so that both can be compared.
+"""
+
+import math
+from typing import Any, NamedTuple
+
+from hnr_planner.core.kernels import interpreted, kernel
+from numba.core.dispatcher import Dispatcher
+from numba.extending import overload
+import numpy as np
+
+
+class Primitives(NamedTuple):
+    """The kernels of one type of compiled space."""
+
+    contains: Dispatcher
+    leave: Dispatcher
+
+
+_PRIMITIVES: dict[type, Primitives] = {}
+
+
+def register(data_type: type, primitives: Primitives) -> None:
+    """Let ``contains`` and ``leave`` answer for NamedTuples of ``data_type``."""
+    _PRIMITIVES[data_type] = primitives
+
+
+def contains(space: Any, x: Any) -> bool:
+    """Say whether ``x`` is a free point of ``space``."""
+    return interpreted(_PRIMITIVES[type(space)].contains)(space, x)
+
+
+def leave(space: Any, x: Any, u: Any, t: float, enough: float) -> float:
+    """Return the first parameter >= ``t`` at which the line ``x + s u`` leaves ``space``."""
+    return interpreted(_PRIMITIVES[type(space)].leave)(space, x, u, t, enough)
+
+
+@overload(contains)
+def _compiled_contains(space, x):
+    compiled = _PRIMITIVES[space.instance_class].contains
+    return lambda space, x: compiled(space, x)
+
+
+@overload(leave)
+def _compiled_leave(space, x, u, t, enough):
+    compiled = _PRIMITIVES[space.instance_class].leave
+    return lambda space, x, u, t, enough: compiled(space, x, u, t, enough)
+
+
+@kernel
+def are_free(space, points):
+    """Say which of ``points`` (k, dim) are free: (k,) bool."""
+    free = np.empty(len(points), dtype=np.bool_)
+    for k in range(len(points)):
+        free[k] = contains(space, points[k])
+    return free
+
+
+@kernel
+def chord(space, x, u):
+    """Return the ends of the largest free interval of ``x + s u`` around ``s = 0``."""
+    if not contains(space, x):
+        return 0.0, 0.0
+    return -leave(space, x, -u, 0.0, math.inf), leave(space, x, u, 0.0, math.inf)
+
+
+@kernel
+def sees(space, a, b):
+    """Say whether the closed segment from ``a`` to ``b`` is free: the chord goes beyond ``b``."""
+    u = b - a
+    for component in u:
+        if component != 0.0:
+            return leave(space, a, u, 0.0, 1.0) > 1.0
+    return contains(space, a)

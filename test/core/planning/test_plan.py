@@ -1,0 +1,246 @@
+"""The answer to a request: every status, every refusal, the clock and the seed."""
+
+import math
+from test.brute_force import path_collisions
+from test.laws import maps
+import threading
+import time
+
+from hnr_planner.core import ALGORITHMS, GridSpace, plan, PlannerStatus, RequestError, RRT
+from hnr_planner.maps import spiral
+import numpy as np
+import pytest
+
+BLOCKED = maps.rooms(60, 80, 10, seed=4)
+SPACE = GridSpace.from_blocked(BLOCKED, 0.1)
+START, GOAL = SPACE.cell_centres(2, 2), SPACE.cell_centres(57, 75)
+
+NARROW = spiral(0.4)
+HARD = GridSpace.from_blocked(NARROW.blocked, NARROW.resolution)
+
+
+def hard(**arguments):
+    return plan(HARD, NARROW.start, NARROW.goal, algorithm='rrt', seed=0, **arguments)
+
+
+def walled_off() -> GridSpace:
+    blocked = np.zeros((20, 20), dtype=bool)
+    blocked[:, 10] = True
+    return GridSpace.from_blocked(blocked)
+
+
+# -- solved --------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize('algorithm', ALGORITHMS)
+def test_the_same_seed_gives_the_same_result_to_the_last_bit(algorithm: str):
+    first, second = (
+        plan(SPACE, START, GOAL, algorithm=algorithm, seed=9, optimize_iterations=2)
+        for _ in range(2)
+    )
+    np.testing.assert_array_equal(first.path, second.path)
+    np.testing.assert_array_equal(first.samples, second.samples)
+    assert first.iterations == second.iterations
+    assert not first.cut_by_time
+    other = plan(SPACE, START, GOAL, algorithm=algorithm, seed=10)
+    assert other.path.shape != first.path.shape or (other.path != first.path).any()
+
+
+def test_a_fresh_seed_is_reported_and_gives_the_result_again():
+    fresh = plan(SPACE, START, GOAL)
+    again = plan(SPACE, START, GOAL, seed=fresh.seed)
+    np.testing.assert_array_equal(again.path, fresh.path)
+    assert len({plan(SPACE, START, GOAL).seed for _ in range(5)}) > 1
+
+
+@pytest.mark.parametrize('algorithm', ALGORITHMS)
+@pytest.mark.parametrize('goal_radius', [0.0, 0.5])
+def test_start_equal_to_goal_is_solved_by_two_equal_points(algorithm: str, goal_radius: float):
+    result = plan(SPACE, START, START, algorithm=algorithm, goal_radius=goal_radius)
+    assert result.status is PlannerStatus.SOLVED
+    np.testing.assert_array_equal(result.path, [START, START])
+    assert result.length == 0.0
+    assert result.iterations == 0
+
+
+def test_the_first_solution_is_kept_beside_the_simplified_path():
+    raw = plan(SPACE, START, GOAL, algorithm='hit_and_run', seed=3, simplify=False)
+    result = plan(SPACE, START, GOAL, algorithm='hit_and_run', seed=3)
+    assert result.first_solution.length == raw.length == raw.first_solution.length
+    assert result.length < raw.length
+    assert result.first_solution.elapsed <= result.elapsed
+    assert len(result.paths) == 1 and result.paths[0] is result.path
+
+
+def test_more_searches_never_give_a_longer_path():
+    once = plan(SPACE, START, GOAL, seed=4)
+    often = plan(SPACE, START, GOAL, seed=4, optimize_iterations=20)
+    assert often.length < once.length
+    assert often.iterations > once.iterations
+    assert often.first_solution.length == once.first_solution.length
+    assert path_collisions(often.path, BLOCKED, 0.1) == []
+
+
+def test_improving_for_a_time_ends_with_the_time_and_says_so():
+    began = time.perf_counter()
+    result = plan(SPACE, START, GOAL, seed=4, optimize_for=0.2)
+    assert 0.2 <= time.perf_counter() - began < 5.0
+    assert result.status is PlannerStatus.SOLVED
+    assert result.cut_by_time
+
+
+def test_inputs_are_not_changed():
+    start, goal = START.copy(), GOAL.copy()
+    plan(SPACE, start, goal, seed=0)
+    np.testing.assert_array_equal(start, START)
+    np.testing.assert_array_equal(goal, GOAL)
+
+
+# -- refused at once -----------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ('start', 'words'),
+    [((-1.0, 1.0), 'outside the map'), ((10.5, 5.5), 'occupied'), ((11.0, 5.5), 'on the edge')],
+)
+def test_a_start_that_is_not_free(start: tuple[float, float], words: str):
+    assert BLOCKED[5, 10] and not BLOCKED[5, 11]
+    result = plan(GridSpace.from_blocked(BLOCKED), start, (2.5, 2.5), seed=0)
+    assert result.status is PlannerStatus.INVALID_START
+    assert words in result.message and f'{start[0]:g}' in result.message
+    assert result.path.shape == (0, 2) and result.paths == ()
+    assert result.length == math.inf
+    assert result.first_solution is None
+
+
+def test_a_goal_that_is_not_free():
+    result = plan(SPACE, START, (1.05, 0.5))
+    assert result.status is PlannerStatus.INVALID_GOAL
+    assert 'occupied' in result.message
+
+
+def test_inflated_and_unknown_are_named():
+    data = np.zeros((20, 20), dtype=np.int8)
+    data[10, 10], data[3, 3] = 100, -1
+    space = GridSpace.from_occupancy(data, 0.1, robot_radius=0.25)
+    near = plan(space, (0.5, 1.5), (1.25, 1.05))
+    assert near.status is PlannerStatus.INVALID_GOAL
+    assert 'robot radius of 0.25 m' in near.message
+    unknown = plan(space, (0.35, 0.35), (1.5, 0.5))
+    assert unknown.status is PlannerStatus.INVALID_START
+    assert 'unknown' in unknown.message
+
+
+@pytest.mark.parametrize('algorithm', ALGORITHMS)
+def test_unreachable_is_proved_without_a_search(algorithm: str):
+    result = plan(walled_off(), (5, 5), (15, 5), algorithm=algorithm, time_limit=math.inf)
+    assert result.status is PlannerStatus.UNREACHABLE
+    assert result.iterations == 0 and len(result.samples) == 0
+    assert 'no path exists' in result.message
+
+
+def test_a_gap_between_diagonal_obstacles_is_no_way():
+    blocked = np.eye(12, dtype=bool)
+    space = GridSpace.from_blocked(blocked)
+    assert plan(space, (9.5, 1.5), (1.5, 9.5)).status is PlannerStatus.UNREACHABLE
+
+
+def test_a_goal_region_across_the_wall_counts_when_it_reaches_over():
+    space = walled_off()
+    assert plan(space, (5, 5), (11.5, 5), goal_radius=1.4).status is PlannerStatus.UNREACHABLE
+    over = plan(space, (5, 5), (11.5, 5), goal_radius=1.9, seed=0, algorithm='hit_and_run')
+    assert over.status is PlannerStatus.SOLVED
+    assert over.path[-1][0] < 10.0
+    assert plan(space, (5, 5), (10.5, 5), goal_radius=0.4).status is PlannerStatus.INVALID_GOAL
+    assert plan(space, (5, 5), (10.5, 5), goal_radius=0.9).status is PlannerStatus.SOLVED
+
+
+# -- stopped -------------------------------------------------------------------------------------
+
+
+def test_a_time_limit_ends_the_call_and_the_search_is_told():
+    began = time.perf_counter()
+    result = hard(time_limit=0.1)
+    assert 0.1 <= time.perf_counter() - began < 2.0
+    assert result.status is PlannerStatus.TIMEOUT
+    assert result.cut_by_time
+    assert str(result.iterations) in result.message
+    assert len(result.samples) > 1 and result.path.shape == (0, 2)
+
+
+def test_a_limit_on_transitions_is_exact_and_repeatable():
+    first, second = hard(max_iterations=777), hard(max_iterations=777)
+    assert first.status is PlannerStatus.ITERATION_LIMIT
+    assert first.iterations == second.iterations == 777
+    assert not first.cut_by_time
+    np.testing.assert_array_equal(first.samples, second.samples)
+
+
+def test_a_cancelled_search_ends_and_says_so():
+    cancel = threading.Event()
+    threading.Timer(0.2, cancel.set).start()
+    began = time.perf_counter()
+    result = hard(time_limit=30.0, cancel=cancel)
+    assert result.status is PlannerStatus.CANCELLED
+    assert 0.1 < time.perf_counter() - began < 5.0
+
+
+def test_a_search_that_only_rejects_still_hears_the_clock():
+    """One free cell in ten million: RRT's sampler finds nothing, and the limit holds."""
+    blocked = np.ones((3000, 3000), dtype=bool)
+    blocked[1500, 1500:1503] = False
+    blocked[1501, 1502] = False
+    space = GridSpace.from_blocked(blocked)
+    began = time.perf_counter()
+    result = plan(space, (1500.2, 1500.2), (1502.5, 1501.9), algorithm='rrt', time_limit=0.2)
+    assert time.perf_counter() - began < 2.0
+    assert result.status is PlannerStatus.TIMEOUT
+    assert result.counts['rejected_proposals'] > 1000
+
+
+def test_threads_plan_side_by_side_and_get_what_they_get_alone():
+    alone = [plan(SPACE, START, GOAL, seed=seed).path for seed in range(8)]
+    together = [None] * 8
+
+    def run(seed: int) -> None:
+        together[seed] = plan(SPACE, START, GOAL, seed=seed, time_limit=30.0).path
+
+    threads = [threading.Thread(target=run, args=(seed,)) for seed in range(8)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    for a, b in zip(alone, together, strict=True):
+        np.testing.assert_array_equal(a, b)
+
+
+# -- malformed -----------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ('arguments', 'words'),
+    [
+        ({'start': (math.nan, 0.0)}, 'start must be finite'),
+        ({'goal': (0.0, math.inf)}, 'goal must be finite'),
+        ({'start': (1.0, 2.0, 3.0)}, r'start must have shape'),
+        ({'goal': 'there'}, "goal must be numbers, got 'there'"),
+        ({'goal_radius': -0.1}, 'goal_radius must be in'),
+        ({'goal_radius': math.nan}, 'goal_radius must be in'),
+        ({'time_limit': math.nan}, 'time_limit must be in'),
+        ({'time_limit': -1.0}, 'time_limit must be in'),
+        ({'max_iterations': 0}, 'max_iterations must be at least 1, got 0'),
+        ({'max_iterations': 1.5}, 'max_iterations must be a whole number, got 1.5'),
+        ({'seed': -1}, 'seed must be at least 0, got -1'),
+        ({'optimize_for': -1.0}, 'optimize_for must be in'),
+        ({'algorithm': 'dijkstra'}, "one of auto, hit_and_run, rrt, got 'dijkstra'"),
+        ({'algorithm': 'hit_and_run', 'max_step': 1.0}, "no setting 'max_step'"),
+        ({'algorithm': 'rrt', 'step': 1.0}, "no setting 'step'; it has max_step"),
+        ({'algorithm': 'rrt', 'max_step': 0.0}, 'max_step must be above 0'),
+        ({'algorithm': RRT(), 'max_step': 1.0}, 'go with the name of a planner only'),
+    ],
+)
+def test_a_malformed_argument_is_a_value_error_that_names_the_value(arguments, words: str):
+    request = {'start': START, 'goal': GOAL, **arguments}
+    with pytest.raises(RequestError, match=words) as caught:
+        plan(SPACE, request.pop('start'), request.pop('goal'), **request)
+    assert isinstance(caught.value, ValueError)

@@ -1,0 +1,72 @@
+"""Simplified paths: free, with the same ends, never longer, for a bounded amount of work."""
+
+from test.brute_force import path_collisions
+from test.laws import maps
+
+from hnr_planner.core import GridSpace, plan, RequestError, simplify
+from hnr_planner.core.planning.result import path_length
+import numpy as np
+from numpy.typing import NDArray
+import pytest
+
+BLOCKED = maps.rooms(60, 80, 10, seed=4)
+ORIGIN = (2.0, -1.0, 0.4)
+SPACE = GridSpace.from_blocked(BLOCKED, 0.1, ORIGIN)
+START, GOAL = SPACE.cell_centres(2, 2), SPACE.cell_centres(57, 75)
+
+
+def chain(seed: int) -> NDArray[np.float64]:
+    result = plan(SPACE, START, GOAL, algorithm='hit_and_run', seed=seed, simplify=False)
+    assert len(result.path) > 5
+    return result.path
+
+
+@pytest.mark.parametrize('seed', range(20))
+def test_a_simplified_path_is_free_shorter_and_has_the_same_ends(seed: int):
+    path = chain(seed)
+    before = path.copy()
+    shorter = simplify(SPACE, path, seed=seed)
+    np.testing.assert_array_equal(path, before)
+    np.testing.assert_array_equal(shorter[[0, -1]], path[[0, -1]])
+    assert path_length(shorter) < path_length(path)
+    assert path_collisions(shorter, BLOCKED, 0.1, ORIGIN) == []
+
+
+def test_again_and_again_it_never_gets_longer():
+    path = chain(0)
+    for seed in range(30):
+        shorter = simplify(SPACE, path, seed=seed, max_iterations=200)
+        assert path_length(shorter) <= path_length(path)
+        path = shorter
+    assert path_collisions(path, BLOCKED, 0.1, ORIGIN) == []
+
+
+def test_a_straight_path_stays_as_it_is():
+    straight = np.array([START, START + (0.1, 0.05)])
+    np.testing.assert_array_equal(simplify(SPACE, straight, seed=0), straight)
+
+
+def test_the_same_seed_gives_the_same_path():
+    path = chain(1)
+    np.testing.assert_array_equal(simplify(SPACE, path, seed=3), simplify(SPACE, path, seed=3))
+
+
+def test_no_work_and_no_time_leave_the_path_as_it_is():
+    path = chain(2)
+    np.testing.assert_array_equal(simplify(SPACE, path, seed=0, max_iterations=0), path)
+    np.testing.assert_array_equal(simplify(SPACE, path, seed=0, time_limit=0.0), path)
+
+
+@pytest.mark.parametrize(
+    ('path', 'words'),
+    [
+        ([START], 'at least two points'),
+        ([START, GOAL], 'segment 0'),
+        ([START, START, GOAL], 'segment 1'),
+        ([[0.0, 0.0, 0.0], [1.0, 1.0, 1.0]], 'shape'),
+        ([START, (np.nan, 0.0)], 'finite'),
+    ],
+)
+def test_a_path_that_is_none_is_refused(path, words: str):
+    with pytest.raises(RequestError, match=words):
+        simplify(SPACE, path, seed=0)

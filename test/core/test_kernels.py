@@ -1,0 +1,162 @@
+"""Compiled kernels: fresh after every edit, the same as interpreted, and never without a cache."""
+
+import os
+from pathlib import Path
+import shutil
+import subprocess
+import sys
+from test.laws import maps
+
+from hnr_planner.core import GridSpace, kernels
+from hnr_planner.core.kernels import interpreted
+from hnr_planner.core.planning import nearest, rrt, simplify
+from hnr_planner.core.planning.hit_and_run import _walk
+from hnr_planner.core.planning.search import Problem
+from hnr_planner.core.sampling.sample import run_chain
+from hnr_planner.core.spaces.primitives import chord
+import numpy as np
+import pytest
+
+CHORD = """
+import numpy as np
+from hnr_planner.core.spaces import GridSpace
+space = GridSpace.from_blocked(np.zeros((3, 3), bool))
+print(space.chord((0.5, 0.5), (1.0, 0.0)).upper)
+"""
+
+
+def chord_of_copy(folder: Path, cache: Path) -> float:
+    """Upper end of a chord, answered by a fresh Python on the copy of the package."""
+    environment = dict(os.environ, PYTHONPATH=str(folder), NUMBA_CACHE_DIR=str(cache))
+    done = subprocess.run(
+        [sys.executable, '-c', CHORD],
+        cwd=folder,
+        env=environment,
+        capture_output=True,
+        text=True,
+        timeout=120,
+        check=True,
+    )
+    return float(done.stdout)
+
+
+@pytest.fixture
+def copy(tmp_path: Path) -> Path:
+    """Return a folder with a copy of the core that a test may edit."""
+    core = Path(kernels.__file__).parent
+    shutil.copytree(core, tmp_path / 'hnr_planner' / 'core')
+    (tmp_path / 'hnr_planner' / '__init__.py').touch()
+    return tmp_path
+
+
+def edit(path: Path, old: str, new: str) -> None:
+    text = path.read_text()
+    assert text.count(old) >= 1, f'{old!r} is no longer in {path.name}'
+    path.write_text(text.replace(old, new))
+
+
+HALVED = ('return max(s, t)', 'return max(s, t) / 2.0')
+
+
+def test_an_edited_space_is_never_answered_from_a_stale_cache(copy: Path, tmp_path: Path):
+    core = copy / 'hnr_planner' / 'core'
+    assert chord_of_copy(copy, tmp_path / 'cache') == 2.5
+    edit(core / 'spaces' / 'grid_traversal.py', *HALVED)
+    assert chord_of_copy(copy, tmp_path / 'cache') == 1.25
+
+
+def test_a_cache_that_ignores_other_files_would_be_stale(copy: Path, tmp_path: Path):
+    """Show that the test above can fail: it does with one folder for all sources."""
+    core = copy / 'hnr_planner' / 'core'
+    edit(core / 'kernels.py', 'return digest.hexdigest()[:16]', "return 'always the same'")
+    assert chord_of_copy(copy, tmp_path / 'cache') == 2.5
+    edit(core / 'spaces' / 'grid_traversal.py', *HALVED)
+    assert chord_of_copy(copy, tmp_path / 'cache') == 2.5
+
+
+def test_without_a_folder_to_write_kernels_are_kept_for_this_run_with_a_warning(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+):
+    occupied = tmp_path / 'a file'
+    occupied.touch()
+    monkeypatch.setenv('NUMBA_CACHE_DIR', str(occupied))
+    with pytest.warns(RuntimeWarning, match='NUMBA_CACHE_DIR'):
+        folder = kernels.cache_folder.__wrapped__()
+    assert folder.is_dir()
+    folder.rmdir()
+
+
+# -- interpreted and compiled agree to the last bit ----------------------------------------------
+
+GRID = GridSpace.from_blocked(maps.rooms(40, 40, 10, seed=1), 0.05)
+LOWER, UPPER = GRID.kernel_bounds
+PROBLEM = Problem(GRID.data, LOWER, UPPER, LOWER + 1.5, UPPER - 1.5, 0.0, GRID.margin)
+
+
+def both(kernel, *arguments):
+    """Run a kernel compiled and interpreted, each on arguments of its own."""
+    outcomes = []
+    for function in (kernel, interpreted(kernel)):
+        rng = np.random.default_rng(5)
+        own = [
+            rng
+            if value is np.random.Generator
+            else value.copy()
+            if isinstance(value, np.ndarray)
+            else value
+            for value in arguments
+        ]
+        outcomes.append((function(*own), own, rng.random()))
+    return outcomes
+
+
+def assert_same(compiled, plain):
+    for a, b in zip(compiled, plain, strict=True):
+        if isinstance(a, tuple):
+            assert_same(a, b)
+        elif isinstance(a, list):
+            assert_same(tuple(a), tuple(b))
+        elif not isinstance(a, np.random.Generator):
+            np.testing.assert_array_equal(a, b)
+
+
+def test_the_chord():
+    rng = np.random.default_rng(3)
+    directions = rng.standard_normal((300, 2))
+    points = rng.uniform(LOWER, UPPER, (300, 2))
+    for x, u in zip(points, directions, strict=True):
+        assert chord(GRID.data, x, u) == interpreted(chord)(GRID.data, x, u)
+
+
+@pytest.mark.parametrize('walk', [0, 1])
+def test_the_walks(walk: int):
+    draws = np.zeros((200, 2))
+    assert_same(*both(run_chain, GRID.data, walk, PROBLEM.start, np.random.Generator, 3, 2, draws))
+
+
+def test_hit_and_run():
+    chain = np.tile(PROBLEM.start, (300, 1))
+    assert_same(*both(_walk, PROBLEM, np.random.Generator, chain, 1, 300))
+
+
+def test_rrt():
+    compiled, plain = [], []
+    for grow, insert, outcome in (
+        (rrt._grow, nearest.insert, compiled),
+        (interpreted(rrt._grow), interpreted(nearest.insert), plain),
+    ):
+        vertices, parents = np.tile(PROBLEM.start, (301, 1)), np.full(301, -1)
+        tree = nearest.empty_box_tree(LOWER, UPPER, 301)
+        insert(tree, vertices, 0)
+        rng = np.random.default_rng(5)
+        far = PROBLEM._replace(goal=np.array([-9.0, -9.0]), goal_radius=1.0)
+        done = grow(far, np.inf, rng, vertices, parents, 1, tree, 300)
+        outcome.extend([done, vertices, parents, tuple(tree)])
+    assert_same(compiled, plain)
+
+
+def test_simplify():
+    chain = np.tile(PROBLEM.start, (60, 1))
+    _walk(PROBLEM._replace(goal_radius=1e-9), np.random.default_rng(1), chain, 1, 60)
+    assert_same(*both(simplify._shortcut, GRID.data, chain, np.random.Generator, 100))
+    assert_same(*both(simplify._last_seen, GRID.data, chain, 0, 59, 100))

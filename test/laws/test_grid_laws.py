@@ -1,0 +1,457 @@
+"""What holds on a grid beyond the laws of every space: cells, corners, components, distances."""
+
+from hypothesis import given, settings, strategies as st
+import numpy as np
+import pytest
+from scipy import ndimage
+
+from hnr_planner.core import GridSpace
+from test.brute_force import blocked_cells, chord_by_search, path_collisions
+from test.laws import maps
+
+GRIDS = {
+    'two rooms': maps.TWO_ROOMS,
+    'u shape': maps.U_SHAPE,
+    'checkerboard': maps.CHECKERBOARD,
+    'spiral': maps.SPIRAL,
+    'corridor': maps.CORRIDOR,
+    'one cell': maps.ONE_CELL,
+    'one blocked cell': ~maps.ONE_CELL,
+    'speckle': maps.speckle(20, 30, 0.35, seed=5),
+}
+
+# Resolution, origin: powers of two, where every multiple of a cell is exact in floats.
+EXACT_FRAMES = {
+    'cells': (1.0, (0.0, 0.0, 0.0)),
+    'quarter metres': (0.25, (-3.0, 5.5, 0.0)),
+    'half metres': (0.5, (1.0, 2.0, 0.0)),
+}
+
+FRAMES = EXACT_FRAMES | {
+    'metres': (0.05, (-12.3, 4.56, 0.0)),
+    'turned': (0.05, (3.0, -2.0, 0.7)),
+    'turned round': (0.1, (100.0, 200.0, np.pi)),
+}
+
+EXACT = settings(max_examples=300, deadline=None, derandomize=True, database=None)
+
+
+def in_map_frame(points, resolution, origin):
+    """Return points, given in cells, in the map frame; written with complex numbers."""
+    z = (points[..., 0] + 1j * points[..., 1]) * resolution
+    z = z * np.exp(1j * origin[2]) + origin[0] + 1j * origin[1]
+    return np.stack([z.real, z.imag], axis=-1)
+
+
+def touching_cells_are_free(blocked, x, y):
+    """Return whether every cell that a point touches is free, by the definition."""
+    rows, cols = blocked.shape
+    return all(
+        0 <= row < rows and 0 <= col < cols and not blocked[row, col]
+        for row in range(int(np.ceil(y)) - 1, int(np.floor(y)) + 1)
+        for col in range(int(np.ceil(x)) - 1, int(np.floor(x)) + 1)
+    )
+
+
+# -- the boundary ----------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize('frame', EXACT_FRAMES)
+@pytest.mark.parametrize('grid', GRIDS)
+def test_a_point_is_free_when_every_cell_that_it_touches_is(grid, frame):
+    """Corners, edges and centres of all cells, and of a ring of cells outside the map."""
+    blocked = GRIDS[grid]
+    space = GridSpace.from_blocked(blocked, *EXACT_FRAMES[frame])
+    rows, cols = blocked.shape
+    x, y = np.meshgrid(np.arange(-1, cols + 1.5, 0.5), np.arange(-1, rows + 1.5, 0.5))
+    cells = np.stack([x.ravel(), y.ravel()], axis=1)
+    expected = [touching_cells_are_free(blocked, *cell) for cell in cells]
+    points = in_map_frame(cells, *EXACT_FRAMES[frame])
+    assert space.contains(points).tolist() == expected
+    for point, is_free in zip(points, expected, strict=True):
+        chord = space.chord(point, (1.0, 2.0))
+        assert (chord.lower < 0 < chord.upper) == is_free
+        assert is_free or tuple(chord) == (0.0, 0.0)
+        assert space.is_motion_valid(point, point) == is_free
+
+
+@pytest.mark.parametrize('frame', FRAMES)
+def test_a_point_that_rounds_onto_an_edge_has_one_answer(frame):
+    """Whichever way rounding takes it, alone or among many, every question agrees."""
+    space = GridSpace.from_blocked(maps.TWO_ROOMS, *FRAMES[frame])
+    rows, cols = maps.TWO_ROOMS.shape
+    x, y = np.meshgrid(np.arange(0, cols + 0.1, 0.25), np.arange(0, rows + 0.1, 0.25))
+    points = in_map_frame(np.stack([x.ravel(), y.ravel()], axis=1), *FRAMES[frame])
+    together = space.contains(points)
+    assert 0 < together.sum() < len(points)
+    for point, is_free in zip(points, together, strict=True):
+        assert space.contains(point) == is_free
+        assert (space.chord(point, (0.3, -0.4)).upper > 0) == is_free
+        assert space.is_motion_valid(point, point) == is_free
+        assert space.connected(point, point) == is_free
+
+
+@pytest.mark.parametrize('frame', FRAMES)
+@pytest.mark.parametrize('mirrored', [False, True])
+def test_nothing_squeezes_between_diagonal_obstacles(frame, mirrored):
+    """In a checkerboard no two cells are joined, in whatever frame rounding happens."""
+    blocked = maps.CHECKERBOARD[:, ::-1] if mirrored else maps.CHECKERBOARD
+    space = GridSpace.from_blocked(blocked, *FRAMES[frame])
+    centres = np.argwhere(~blocked)[:, ::-1] + 0.5
+    points = in_map_frame(centres, *FRAMES[frame])
+    for i, start in enumerate(points):
+        for j, end in enumerate(points):
+            assert space.is_motion_valid(start, end) == (i == j)
+            assert space.connected(start, end) == (i == j)
+        for direction in ((1, 1), (1, -1), (-1, 1), (-1, -1)):
+            turned = in_map_frame(np.array(direction, float), 1.0, (0, 0, FRAMES[frame][1][2]))
+            upper = space.chord(start, turned).upper
+            assert upper == pytest.approx(0.5 * FRAMES[frame][0], rel=1e-9)
+
+
+def test_a_ray_along_a_grid_line_needs_both_sides_free():
+    blocked = maps.drawn('......', '..#...', '......', '......')
+    space = GridSpace.from_blocked(blocked)
+    assert space.chord((0.5, 2.0), (1, 0)) == (-0.5, 1.5)
+    assert space.chord((0.5, 3.0), (1, 0)) == (-0.5, 1.5)
+    assert space.chord((0.5, 1.0), (1, 0)) == (-0.5, 5.5)
+    assert space.chord((2.0, 0.5), (0, 1)) == (-0.5, 1.5)
+    assert space.chord((3.0, 0.5), (0, 1)) == (-0.5, 1.5)
+    assert space.chord((4.0, 0.5), (0, 1)) == (-0.5, 3.5)
+
+
+def test_a_chord_ends_at_a_corner_that_it_touches():
+    blocked = maps.drawn('......', '..#...', '......', '......')
+    space = GridSpace.from_blocked(blocked)
+    assert space.chord((1.0, 1.0), (1, 1)).upper == 1
+    assert space.chord((1.0, 3.0), (1, -1)).upper == 1
+    assert space.chord((1.0, 1.0), (1, -1)) == (-1, 1)
+    assert space.chord((0.5, 1.5), (3, 1)).upper == 0.5
+    assert space.chord((0.5, 1.5), (3, 2)).upper == 0.5
+    assert not space.is_motion_valid((1.0, 3.0), (3.0, 1.0))
+
+
+# -- the chord against exact fractions ---------------------------------------------------------------
+
+
+@st.composite
+def grids(draw):
+    rows, cols = draw(st.integers(1, 8)), draw(st.integers(1, 8))
+    cells = st.lists(st.booleans(), min_size=rows * cols, max_size=rows * cols)
+    if draw(st.booleans()):
+        return np.array(draw(cells)).reshape(rows, cols)
+    return maps.speckle(rows, cols, 0.15, draw(st.integers(0, 10**6)))
+
+
+def coordinates(denominator):
+    """Multiples of a power of two: halves hit corners and edges, finer ones pass between them."""
+    return st.integers(-denominator, 9 * denominator).map(lambda n: n / denominator)
+
+
+POINTS = st.one_of(*(st.tuples(coordinates(d), coordinates(d)) for d in (2, 4, 1024)))
+DIRECTIONS = st.one_of(
+    st.tuples(st.integers(-3, 3), st.integers(-3, 3)),
+    st.tuples(coordinates(1024), coordinates(1024)),
+    st.tuples(st.integers(-1024, 1024), st.integers(-3, 3)),
+).filter(any)
+
+
+@EXACT
+@given(grids(), POINTS, DIRECTIONS)
+def test_chord_is_the_exact_one(blocked, point, direction):
+    """
+    Equal to the chord in fractions, ties included.
+
+    Coordinates are multiples of 1/1024, so a line that misses a corner misses it by more than any
+    rounding, and one that hits it hits it in floats too.
+    """
+    lower, upper = chord_by_search(blocked, point, direction)
+    found = GridSpace.from_blocked(blocked).chord(point, direction)
+    assert (found.lower, found.upper) == pytest.approx((float(lower), float(upper)), rel=1e-15)
+
+
+@EXACT
+@given(grids(), POINTS, DIRECTIONS, st.sampled_from([0.125, 0.5, 4.0]), POINTS)
+def test_chord_in_metres_is_the_exact_one(blocked, cell, direction, resolution, origin):
+    space = GridSpace.from_blocked(blocked, resolution, (*origin, 0.0))
+    point = np.array(origin) + np.array(cell) * resolution
+    lower, upper = chord_by_search(blocked, point, direction, resolution, origin)
+    found = space.chord(point, direction)
+    assert (found.lower, found.upper) == pytest.approx((float(lower), float(upper)), rel=1e-15)
+
+
+@EXACT
+@given(grids(), POINTS, POINTS)
+def test_motion_is_valid_exactly_when_no_closed_cell_touches_it(blocked, start, end):
+    space = GridSpace.from_blocked(blocked)
+    if start == end:
+        expected = touching_cells_are_free(blocked, *start)
+    else:
+        expected = chord_by_search(blocked, start, np.subtract(end, start))[1] > 1
+    assert space.is_motion_valid(start, end) == expected
+    assert space.is_motion_valid(end, start) == expected
+    if expected:
+        assert path_collisions([start, end], blocked, 1.0) == []
+
+
+@pytest.mark.parametrize('frame', FRAMES)
+def test_chord_is_the_exact_one_for_any_floats(frame):
+    """1000 random lines on random maps; a line this near to a corner by chance: p < 1e-6."""
+    rng = np.random.default_rng(7)
+    resolution, origin = FRAMES[frame]
+    for _ in range(50):
+        blocked = maps.speckle(8, 7, rng.choice([0.05, 0.2, 0.4]), seed=int(rng.integers(10**6)))
+        space = GridSpace.from_blocked(blocked, resolution, origin)
+        for cell, angle in zip(rng.uniform(0, 7, (20, 2)), rng.uniform(0, 7, 20), strict=True):
+            direction = np.array([np.cos(angle), np.sin(angle)])
+            expected = [resolution * float(s) for s in chord_by_search(blocked, cell, direction)]
+            found = space.chord(
+                in_map_frame(cell, resolution, origin),
+                in_map_frame(direction, 1.0, (0.0, 0.0, origin[2])),
+            )
+            assert found == pytest.approx(expected, abs=1e-9 * resolution)
+
+
+# -- from cells to space -----------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize('radius', [0.0, 0.04, 0.05, 0.07, 0.1, 0.11, 0.15, 0.25, 0.5, 7.0])
+def test_inflation_is_the_definition(radius):
+    for seed in range(5):
+        occupied = maps.speckle(40, 60, 0.01, seed)
+        space = GridSpace.from_blocked(occupied, 0.05, robot_radius=radius)
+        assert np.array_equal(space.blocked, blocked_cells(occupied, 0.05, radius))
+        assert np.array_equal(space.occupied, occupied)
+
+
+@pytest.mark.parametrize('resolution', [0.01, 0.03, 0.05, 0.1, 0.3])
+def test_a_radius_of_whole_cells_reaches_that_many_cells(resolution):
+    """Where radius / resolution rounds just below a whole number, too."""
+    occupied = np.zeros((1, 64), dtype=bool)
+    occupied[0, 0] = True
+    for cells in range(60):
+        space = GridSpace.from_blocked(occupied, resolution, robot_radius=cells * resolution)
+        assert space.blocked.sum() == cells + 1
+
+
+@pytest.mark.parametrize('unknown', ['blocked', 'free'])
+@pytest.mark.parametrize('threshold', [1, 65, 100])
+def test_every_value_of_an_occupancy_grid_has_its_meaning(unknown, threshold):
+    """All 256 values: occupied from the threshold to 100, unknown outside 0..100, else free."""
+    data = np.arange(-128, 128).astype(np.int8).reshape(16, 16)
+    occupied = (data >= threshold) & (data <= 100)
+    is_unknown = (data < 0) | (data > 100)
+    blocking = is_unknown if unknown == 'blocked' else None
+    for radius in (0.0, 1.0, 2.3):
+        space = GridSpace.from_occupancy(
+            data, 1.0, robot_radius=radius, occupied_threshold=threshold, unknown=unknown
+        )
+        assert np.array_equal(space.occupied, occupied)
+        assert np.array_equal(space.blocked, blocked_cells(occupied, 1.0, radius, blocking))
+
+
+@pytest.mark.parametrize('frame', FRAMES)
+def test_a_cell_lies_where_the_origin_and_the_yaw_put_it(frame):
+    resolution, origin = FRAMES[frame]
+    space = GridSpace.from_blocked(maps.TWO_ROOMS, resolution, origin)
+    rows, cols = np.indices(maps.TWO_ROOMS.shape).reshape(2, -1)
+    centres = space.cell_centres(rows, cols)
+    expected = in_map_frame(np.stack([cols, rows], axis=1) + 0.5, resolution, origin)
+    assert np.abs(centres - expected).max() < 1e-12 * 300
+    assert np.array_equal(space.contains(centres), ~maps.TWO_ROOMS[rows, cols])
+    assert space.shape == maps.TWO_ROOMS.shape
+    assert space.resolution == resolution
+    assert tuple(space.origin) == origin
+
+
+# -- components --------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize('frame', ['metres', 'turned'])
+@pytest.mark.parametrize('grid', ['two rooms', 'checkerboard', 'spiral', 'speckle', 'u shape'])
+def test_connected_is_what_a_flood_fill_finds(grid, frame):
+    blocked = GRIDS[grid]
+    space = GridSpace.from_blocked(blocked, *FRAMES[frame])
+    labels, _ = ndimage.label(~blocked)
+    rng = np.random.default_rng(8)
+    cells = rng.uniform(0, blocked.shape[::-1], (60, 2))
+    label = labels[cells[:, 1].astype(int), cells[:, 0].astype(int)]
+    points = in_map_frame(cells, *FRAMES[frame])
+    for a, label_a in zip(points, label, strict=True):
+        for b, label_b in zip(points, label, strict=True):
+            assert space.connected(a, b) == (label_a == label_b != 0)
+
+
+@pytest.mark.parametrize('grid', GRIDS)
+def test_the_largest_component_is_the_one_of_the_flood_fill(grid):
+    labels, n = ndimage.label(~GRIDS[grid])
+    largest = GridSpace.from_blocked(GRIDS[grid]).largest_component()
+    assert largest.shape == labels.shape
+    if n == 0:
+        assert not largest.any()
+        return
+    assert len(np.unique(labels[largest])) == 1
+    assert np.array_equal(largest, labels == labels[largest][0])
+    assert largest.sum() == np.bincount(labels[labels > 0]).max()
+
+
+@pytest.mark.parametrize('frame', ['metres', 'turned'])
+def test_the_nearest_reachable_point_is_the_nearest(frame):
+    resolution, origin = FRAMES[frame]
+    blocked = GRIDS['speckle']
+    space = GridSpace.from_blocked(blocked, resolution, origin)
+    labels, _ = ndimage.label(~blocked)
+    rng = np.random.default_rng(9)
+    found = []
+    for start, goal in rng.uniform(0, blocked.shape[::-1], (300, 2, 2)):
+        label = labels[int(start[1]), int(start[0])]
+        goal = goal + rng.uniform(-5, 5, 2)
+        radius = rng.uniform(0, 4)
+        a, b = in_map_frame(np.stack([start, goal]), resolution, origin)
+        nearest = space.nearest_reachable(a, b, radius * resolution)
+        squares = np.argwhere(labels == label)[:, ::-1]
+        apart = np.maximum(np.maximum(squares - goal, goal - squares - 1), 0)
+        distance = np.hypot(*apart.T).min() if label else np.inf
+        if abs(distance - radius) < 1e-6:
+            continue
+        found.append(nearest is not None)
+        assert found[-1] == (distance < radius)
+        if nearest is not None:
+            assert space.connected(a, nearest)
+            offset = np.linalg.norm(nearest - b) / resolution
+            assert offset == pytest.approx(distance, abs=1e-6)
+    assert 50 < sum(found) < 250
+
+
+# -- clearance ---------------------------------------------------------------------------------------
+
+
+def brute_clearance(occupied, cells):
+    """Return the distance from points to the nearest occupied square, all in cells."""
+    squares = np.argwhere(occupied)[:, ::-1]
+    low = squares - cells[:, None]
+    apart = np.maximum(np.maximum(low, -low - 1), 0)
+    return np.hypot(apart[..., 0], apart[..., 1]).min(axis=1, initial=np.inf)
+
+
+@pytest.mark.parametrize('frame', FRAMES)
+@pytest.mark.parametrize('grid', GRIDS)
+def test_clearance_is_the_distance_to_the_raw_occupied_squares(grid, frame):
+    """Inside and outside the map, and whatever the robot's radius blocks besides."""
+    occupied = GRIDS[grid]
+    resolution, origin = FRAMES[frame]
+    space = GridSpace.from_blocked(occupied, resolution, origin, robot_radius=1.5 * resolution)
+    rng = np.random.default_rng(10)
+    cells = rng.uniform(-5, np.array(occupied.shape[::-1]) + 5, (200, 2))
+    expected = brute_clearance(occupied, cells) * resolution
+    found = space.clearance(in_map_frame(cells, resolution, origin))
+    assert found == pytest.approx(expected, abs=1e-9 * resolution)
+    assert (found == 0).sum() == (expected == 0).sum()
+
+
+def test_clearance_far_from_every_wall():
+    """A hall wider than any count in one byte."""
+    occupied = np.zeros((20, 1500), dtype=bool)
+    occupied[3, 2] = True
+    space = GridSpace.from_blocked(occupied)
+    points = np.array([[1499.5, 10.25], [700.5, 19.5], [2.5, 3.5], [300.0, 3.5]])
+    assert space.clearance(points) == pytest.approx(brute_clearance(occupied, points))
+    assert space.path_clearance(points[[0, 1]]) == pytest.approx(brute_clearance(occupied, points)[1])
+    assert space.path_clearance(points[[0, 3]]) == pytest.approx(297.0)
+
+
+def test_unknown_cells_and_the_edge_of_the_map_are_no_walls_to_keep_clear_of():
+    space = GridSpace.from_occupancy(np.full((4, 4), -1, np.int8), 1.0)
+    assert space.clearance([[1.5, 1.5], [0.0, 9.0]]).tolist() == [np.inf, np.inf]
+    assert space.path_clearance([[1.5, 1.5], [3.5, 1.5]]) == np.inf
+
+
+@pytest.mark.parametrize('frame', ['cells', 'turned'])
+@pytest.mark.parametrize('grid', GRIDS)
+def test_clearance_of_a_path_is_the_least_along_it(grid, frame):
+    """
+    Against points every few thousandths of a cell: the least of them is above the truth.
+
+    Clearance changes by no more than the way gone, so it is above by less than half a spacing.
+    """
+    occupied = GRIDS[grid]
+    resolution, origin = FRAMES[frame]
+    space = GridSpace.from_blocked(occupied, resolution, origin)
+    rng = np.random.default_rng(11)
+    for _ in range(20):
+        path = rng.uniform(-2, np.array(occupied.shape[::-1]) + 2, (int(rng.integers(1, 5)), 2))
+        if rng.random() < 0.3:
+            path = np.round(path)
+        dense = np.concatenate([path[:1], *map(_dense, path[:-1], path[1:])])
+        spacing = max((np.linalg.norm(np.diff(dense, axis=0), axis=1)), default=0.0)
+        expected = brute_clearance(occupied, dense).min()
+        found = space.path_clearance(in_map_frame(path, resolution, origin)) / resolution
+        if np.isinf(expected):
+            assert np.isinf(found)
+            continue
+        assert expected - spacing / 2 - 1e-9 <= found <= expected + 1e-9
+
+
+def _dense(a, b):
+    return np.linspace(a, b, 2000)
+
+
+def test_clearance_of_a_path_of_one_point_is_the_clearance_of_the_point():
+    space = GridSpace.from_blocked(maps.TWO_ROOMS)
+    for point in ((1.5, 3.5), (5.5, 6.5), (-2.0, 0.5), (7.5, 2.5)):
+        assert space.path_clearance([point]) == space.clearance([point])[0]
+        assert space.path_clearance([point, point]) == space.clearance([point])[0]
+
+
+def test_a_path_without_points_has_no_clearance():
+    space = GridSpace.from_blocked(maps.TWO_ROOMS)
+    with pytest.raises(ValueError):
+        space.path_clearance(np.empty((0, 2)))
+    assert space.clearance(np.empty((0, 2))).shape == (0,)
+
+
+# -- what describes no grid --------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ('word', 'arguments'),
+    [
+        ('0', {'data': np.empty((0, 5), np.int8)}),
+        ('0', {'data': np.empty((5, 0), np.int8)}),
+        ('shape', {'data': np.zeros(5, np.int8)}),
+        ('shape', {'data': np.zeros((2, 2, 2), np.int8)}),
+        ('resolution', {'resolution': 0.0}),
+        ('resolution', {'resolution': -0.05}),
+        ('resolution', {'resolution': np.nan}),
+        ('resolution', {'resolution': np.inf}),
+        ('origin', {'origin': (np.nan, 0.0, 0.0)}),
+        ('origin', {'origin': (0.0, np.inf, 0.0)}),
+        ('origin', {'origin': (0.0, 0.0, np.nan)}),
+        ('origin', {'origin': (0.0, 0.0)}),
+        ('origin', {'origin': (1e30, 0.0, 0.0)}),
+        ('robot_radius', {'robot_radius': -0.1}),
+        ('robot_radius', {'robot_radius': np.nan}),
+        ('robot_radius', {'robot_radius': np.inf}),
+        ('occupied_threshold', {'occupied_threshold': 0}),
+        ('occupied_threshold', {'occupied_threshold': 101}),
+        ('unknown', {'unknown': 'maybe'}),
+    ],
+)
+def test_numbers_that_describe_no_grid_are_refused_by_name(word, arguments):
+    good = {'data': np.zeros((4, 6), np.int8), 'resolution': 0.05}
+    GridSpace.from_occupancy(**good)
+    with pytest.raises(ValueError, match=word):
+        GridSpace.from_occupancy(**good | arguments)
+
+
+def test_a_space_keeps_its_cells_whatever_becomes_of_the_array():
+    data = np.zeros((4, 6), np.int8)
+    space = GridSpace.from_occupancy(data, 1.0)
+    data[:] = 100
+    assert space.contains((1.5, 1.5))
+    assert not space.blocked.any()
+    blocked = np.zeros((4, 6), bool)
+    space = GridSpace.from_blocked(blocked)
+    blocked[:] = True
+    assert space.contains((1.5, 1.5))
+    assert not space.occupied.any()
