@@ -1,0 +1,94 @@
+# Everything runs in .venv, which `make install` makes. `make` alone says what there is.
+
+.DEFAULT_GOAL := help
+SHELL := /bin/bash
+.SHELLFLAGS := -e -o pipefail -c
+
+VENV := .venv/bin/python
+STAMP := .venv/installed
+
+# A sourced ROS must not mix with the ROS wheels in .venv, nor another environment's wheels: the
+# guard below would keep those in .venv from finding their libraries.
+unexport AMENT_PREFIX_PATH LD_LIBRARY_PATH PYTHONHOME PYTHONPATH RMW_IMPLEMENTATION
+unexport _ROS_WHEELS_BOOTSTRAP_COMPLETE
+
+# A clone that was moved or copied has a .venv that still points at the old place.
+ifneq ($(shell cat $(STAMP) 2>/dev/null),$(CURDIR))
+$(shell rm -f $(STAMP))
+endif
+
+.PHONY: help
+help:
+	@echo 'make install               make .venv with everything in it, ROS 2 included'
+	@echo 'make demo                  plan with real ROS nodes and draw demo.png'
+	@echo 'make demo MAP=FILE.yaml    the same on a map of your own'
+	@echo 'make demo KEEP=1           leave the nodes running, to try calls by hand'
+	@echo 'make test                  run the tests (ARGS="-k name -x" goes to pytest)'
+	@echo 'make check                 format, lint, types, spelling, then the tests'
+	@echo 'make format                put the sources into shape'
+	@echo 'make clean                 remove .venv and all that was built'
+	@echo
+	@echo 'Each works on a fresh clone. PYTHON=... names the Python for .venv (3.11 to 3.13).'
+
+.PHONY: install
+install: $(STAMP)
+
+SUITABLE := import ensurepip, sys, venv; sys.exit(not (3, 11) <= sys.version_info[:2] <= (3, 13))
+
+$(STAMP): setup.py
+	@for python in $(if $(PYTHON),'$(PYTHON)',python3.12 python3.11 python3.13 python3 \
+	               /usr/bin/python3); do \
+	  if "$$python" -c '$(SUITABLE)' >/dev/null 2>&1; then found=$$python; break; fi; \
+	done; \
+	if [ -z "$$found" ]; then \
+	  echo 'No Python 3.11, 3.12 or 3.13 with venv and pip was found$(if $(PYTHON), at $(PYTHON)).'; \
+	  echo 'On Ubuntu or Debian: sudo apt install python3-venv'; \
+	  echo 'Or name one: make install PYTHON=/path/to/python3.12'; \
+	  exit 1; \
+	fi >&2; \
+	if ! grep -qsF '$(CURDIR)/.venv' .venv/bin/activate || \
+	   ! $(VENV) -m pip --version >/dev/null 2>&1; then \
+	  echo "Making .venv with $$("$$found" --version) ..."; \
+	  "$$found" -m venv --clear .venv; \
+	fi
+	@echo 'Installing into .venv, a minute or two; .venv/install.log has the details.'
+	@PYTHONUNBUFFERED=1 $(VENV) -m pip install --disable-pip-version-check \
+	  --editable '.[ros,test,check]' 2>&1 | tee .venv/install.log | \
+	while read -r line; do case "$$line" in \
+	  Collecting*|Processing*) printf '.' ;; \
+	  'Installing collected'*) printf '\nUnpacking, half a minute more ...\n' ;; \
+	  ERROR*|error*) printf '\n%s\n' "$$line" ;; \
+	esac; done
+	@printf '%s' "$(CURDIR)" > $(STAMP)
+	@echo 'Installed. Next: make demo, or: source .venv/bin/activate'
+
+.PHONY: demo
+demo: install
+	$(VENV) -m hnr_planner demo $(if $(MAP),--map '$(MAP)') $(if $(KEEP),--keep)
+
+.PHONY: test
+test: install
+	$(VENV) -m pytest $(ARGS)
+
+.PHONY: check
+check: lint
+	@$(MAKE) --no-print-directory test
+
+.PHONY: lint
+lint: install
+	$(VENV) -m ruff format --check .
+	$(VENV) -m ruff check .
+	$(VENV) -m flake8 .
+	$(VENV) -m pydocstyle hnr_planner launch test setup.py
+	$(VENV) -m mypy
+	$(VENV) -m codespell_lib .
+
+.PHONY: format
+format: install
+	$(VENV) -m ruff check --fix --exit-zero --quiet .
+	$(VENV) -m ruff format .
+
+.PHONY: clean
+clean:
+	rm -rf .venv build install log *.egg-info .hypothesis .mypy_cache .pytest_cache .ruff_cache
+	find . -name __pycache__ -type d -prune -exec rm -rf {} +

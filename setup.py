@@ -1,0 +1,75 @@
+"""Build hnr_planner: for ``colcon build`` (ament_python) and for ``pip install`` alike."""
+
+from glob import glob
+
+from setuptools import find_packages, setup
+
+package_name = 'hnr_planner'
+
+setup(
+    name=package_name,
+    version='0.1.0',
+    description='A ROS 2 planning node and library: Hit-and-Run and RRT on occupancy maps.',
+    long_description='See README.md.',
+    license='Apache-2.0',
+    maintainer='The hnr_planner developers',
+    maintainer_email='maintainers@hnr-planner.example',
+    packages=find_packages(include=[package_name, f'{package_name}.*']),
+    python_requires='>=3.11',
+    # The lower bounds of what Ubuntu 24.04 has are that system's own releases.
+    install_requires=[
+        'matplotlib>=3.6',
+        'numba>=0.60',
+        'numpy>=1.26',
+        'opencv-python-headless>=4.6',
+        'pillow>=10.2',
+        'pyyaml>=6.0',
+    ],
+    extras_require={
+        # ROS 2 Jazzy as wheels, for machines without ROS (x86-64 Linux). Never install these
+        # beside a ROS from apt.
+        'ros': [
+            'ros-jazzy-common-interfaces==5.3.*',
+            'ros-jazzy-rclpy[fastrtps]==7.1.*',
+        ],
+        'test': [
+            'colcon-common-extensions>=0.3',
+            'hypothesis>=6.98',
+            'pytest>=7.4',
+            'scipy>=1.11',
+            'setuptools>=64,<80',  # later ones lack what `colcon build --symlink-install` calls
+        ],
+        # Held to one series each, so that a new rule of a tool never fails an old commit.
+        'check': [
+            'codespell==2.4.*',
+            'mypy==2.4.*',
+            'ruff==0.17.*',
+            'types-PyYAML>=6.0',
+            # What ament_flake8 and ament_pep257 of ROS 2 Jazzy run, as Ubuntu 24.04 has it.
+            'flake8==7.0.*',
+            'flake8-builtins==2.1.*',
+            'flake8-comprehensions==3.14.*',
+            'flake8-docstrings==1.7.*',
+            'flake8-import-order==0.18.*',
+            'flake8-quotes==3.4.*',
+            'pydocstyle==6.3.*',
+        ],
+    },
+    data_files=[
+        ('share/ament_index/resource_index/packages', [f'resource/{package_name}']),
+        (f'share/{package_name}', ['package.xml']),
+        (f'share/{package_name}/launch', glob('launch/*.launch.py')),
+        (f'share/{package_name}/config', glob('config/*.yaml') + glob('config/*.rviz')),
+        (f'share/{package_name}/config/maps', glob('config/maps/*.*')),
+        # pip puts console scripts into bin/, where `ros2 run` does not look; colcon puts them
+        # here and lets its own stand.
+        (f'lib/{package_name}', ['scripts/map_node', 'scripts/planner_node']),
+    ],
+    zip_safe=True,
+    entry_points={
+        'console_scripts': [
+            'map_node = hnr_planner.ros.map_node:main',
+            'planner_node = hnr_planner.ros.planner_node:main',
+        ],
+    },
+)
