@@ -1,0 +1,32 @@
+"""The occupancy grid that map files hold and that planners are given."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+FREE, OCCUPIED, UNKNOWN = 0, 100, -1
+
+
+@dataclass(frozen=True, eq=False)
+class OccupancyMap:
+    """
+    An occupancy grid and its place in the world.
+
+    Attributes
+    ----------
+    data : (rows, cols) int8
+        -1 for unknown, else the chance in percent (0..100) that the cell is occupied. Row 0 is
+        the row nearest the origin, column 0 the column nearest it, as in ``OccupancyGrid``.
+    resolution : float
+        Side of a cell [m].
+    origin : (x, y, yaw)
+        Pose of the outer corner of cell [0, 0] in the map frame [m, m, rad].
+
+    """
+
+    data: NDArray[np.int8]
+    resolution: float
+    origin: tuple[float, float, float] = (0.0, 0.0, 0.0)

@@ -1,0 +1,157 @@
+"""
+The rectangular spiral: a corridor that winds from a corner of a square into its centre.
+
+The paper's experiment with positions only (its section "Planning") plans through a spiral whose
+arms it makes wider or narrower, and says that a fatter middle part hurts RRT alone. It does not
+give the geometry; ours starts at the bottom left, goes up first, turns right at every corner and
+ends where the next arm would be shorter than it is wide. What is left in the centre is solid.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+class Spiral(NamedTuple):
+    """
+    A spiral corridor and a request from its one end to its other.
+
+    ``blocked`` is (rows, cols) bool with row 0 at the bottom. ``start`` and ``goal`` (x, y) [m]
+    lie in the middle of the corridor, half its width from its ends; the paper's goal region
+    around the goal has the radius ``goal_radius`` [m], half the corridor's width.
+    """
+
+    blocked: NDArray[np.bool_]
+    resolution: float
+    start: tuple[float, float]
+    goal: tuple[float, float]
+    goal_radius: float
+
+
+class _Arm(NamedTuple):
+    """One straight piece, in cells: its rectangle, how wide it is and where it leads."""
+
+    rows: slice
+    columns: slice
+    width: int
+    heading: int  # 0 up, 1 right, 2 down, 3 left
+
+
+def spiral(
+    width: float,
+    *,
+    resolution: float = 0.02,
+    wall: float = 0.1,
+    size: float = 10.0,
+    middle_width: float | None = None,
+) -> Spiral:
+    """
+    Build the spiral corridor.
+
+    Parameters
+    ----------
+    width : float
+        Width of the corridor [m]; like the other lengths it is rounded to whole cells.
+    resolution, wall, size : float
+        Side of a cell, thickness of the walls, and side of the square, its outer walls
+        included [m].
+    middle_width : float, optional
+        Width of the arm in the middle of the corridor's sequence of arms [m]: the family that
+        is harder for RRT. None gives all arms the same width.
+
+    Raises
+    ------
+    ValueError
+        A length is not a finite number of at least half a cell, or the square is too small.
+
+    """
+    if not 0 < resolution < math.inf:
+        raise ValueError(f'resolution must be finite and > 0, not {resolution}')
+    across = _cells('width', width, resolution)
+    thickness = _cells('wall', wall, resolution)
+    side = _cells('size', size, resolution)
+    arms = _wind(side, thickness, [across] * side)
+    if not arms:
+        raise ValueError(f'a corridor of width {width} does not fit into a square of {size}')
+    if middle_width is not None:
+        fat = _cells('middle_width', middle_width, resolution)
+        arms = _with_fat_middle(side, thickness, across, fat)
+    if not arms:
+        raise ValueError(f'a middle arm of width {middle_width} does not fit beside {width}')
+    blocked = np.ones((side, side), bool)
+    for arm in arms:
+        blocked[arm.rows, arm.columns] = False
+    return Spiral(
+        blocked,
+        resolution,
+        start=_end(arms[0]._replace(heading=2), resolution),
+        goal=_end(arms[-1], resolution),
+        goal_radius=arms[-1].width * resolution / 2,
+    )
+
+
+def _cells(name: str, length: float, resolution: float) -> int:
+    if not resolution / 2 < length < math.inf:
+        raise ValueError(f'{name} must be finite and at least half a cell, not {length}')
+    return round(length / resolution)
+
+
+def _with_fat_middle(side: int, wall: int, width: int, middle_width: int) -> list[_Arm]:
+    """
+    Return the arms with the middle one fatter, none where that does not fit.
+
+    A fatter arm leaves place for fewer arms, so which one is in the middle has to be looked for.
+    """
+    plain = len(_wind(side, wall, [width] * side))
+    for middle in range(plain // 2, 0, -1):
+        widths = [width] * side
+        widths[middle] = middle_width
+        arms = _wind(side, wall, widths)
+        if len(arms) // 2 >= middle:
+            return arms
+    return []
+
+
+def _wind(side: int, wall: int, widths: list[int]) -> list[_Arm]:
+    """Lay arms of the given widths along the inside of what is left, until none fits."""
+    bottom, top, left, right = wall, side - wall, wall, side - wall
+    arms: list[_Arm] = []
+    behind = 0  # cells to go back so that an arm opens into the one before it
+    for number, width in enumerate(widths):
+        if min(top - bottom, right - left) < width:
+            break
+        heading = number % 4
+        if heading == 0:
+            rows, columns = slice(bottom - behind, top), slice(left, left + width)
+            left += width + wall
+        elif heading == 1:
+            rows, columns = slice(top - width, top), slice(left - behind, right)
+            top -= width + wall
+        elif heading == 2:
+            rows, columns = slice(bottom, top + behind), slice(right - width, right)
+            right -= width + wall
+        else:
+            rows, columns = slice(bottom, bottom + width), slice(left, right + behind)
+            bottom += width + wall
+        arms.append(_Arm(rows, columns, width, heading))
+        behind = width + wall
+    return arms
+
+
+def _end(arm: _Arm, resolution: float) -> tuple[float, float]:
+    """Return the point in the middle of the corridor, half its width before the arm's end."""
+    row = (arm.rows.start + arm.rows.stop) / 2
+    column = (arm.columns.start + arm.columns.stop) / 2
+    if arm.heading == 0:
+        row = arm.rows.stop - arm.width / 2
+    elif arm.heading == 1:
+        column = arm.columns.stop - arm.width / 2
+    elif arm.heading == 2:
+        row = arm.rows.start + arm.width / 2
+    else:
+        column = arm.columns.start + arm.width / 2
+    return column * resolution, row * resolution

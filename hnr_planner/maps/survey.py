@@ -1,0 +1,107 @@
+"""
+What a laser makes of a floor: a simulated survey of a floor plan.
+
+A scanner stands at many places of every room, each known up to a small error. Its rays stop at
+the first solid thing, with noise in range, and at panes of glass almost always. A cell is
+occupied when enough of the rays that came to it ended there, free when rays went through, unknown
+when none came: so walls are ragged, the insides of things and the outdoors stay unknown, and
+windows leave streaks.
+"""
+
+from __future__ import annotations
+
+from hnr_planner.maps.floor_plan import AIR, CELL, FloorPlan, GLASS, Rect, SOLID
+from hnr_planner.maps.occupancy import FREE, OccupancyMap, OCCUPIED, UNKNOWN
+import numpy as np
+from numpy.typing import NDArray
+
+RAYS = 720
+RANGE = 8.0  # [m]
+NOISE = 0.04  # largest error in range [m]
+DRIFT = (0.025, 0.025, 0.004)  # largest error in the scanner's believed pose [m, m, rad]
+SEES_GLASS = 0.97  # share of the rays that a pane stops
+HIT_SHARE = 0.25  # of a cell's rays that have to end in it to make it occupied
+SPACING = 1.9  # between two places of the scanner [m]
+ROOM_TO_STAND = 0.4  # half of the side of the square that the scanner needs [m]
+
+
+def survey(
+    rng: np.random.Generator, plan: FloorPlan, resolution: float, margin: float
+) -> OccupancyMap:
+    """Return the map that the survey draws, with ``margin`` [m] around the building."""
+    sides = np.array(plan.material.shape) * CELL + 2 * margin
+    height, width = (round(side / resolution) for side in sides)
+    hits = np.zeros(height * width, np.int64)
+    passes = np.zeros(height * width, np.int64)
+
+    def cells(points: NDArray[np.floating]) -> NDArray[np.int64]:
+        columns, rows = np.floor((points + margin) / resolution).astype(int).T
+        inside = (columns >= 0) & (columns < width) & (rows >= 0) & (rows < height)
+        return rows[inside] * width + columns[inside]
+
+    for place in _places(rng, plan):
+        ends, crossed = _scan(rng, plan.material, place, resolution)
+        hits += np.bincount(cells(ends), minlength=hits.size)
+        passes += np.bincount(cells(crossed), minlength=hits.size)
+    data = np.full(hits.size, UNKNOWN, np.int8)
+    data[passes > 0] = FREE
+    data[hits > HIT_SHARE * (hits + passes)] = OCCUPIED
+    return OccupancyMap(data.reshape(height, width), resolution, (-margin, -margin, 0.0))
+
+
+def _places(rng: np.random.Generator, plan: FloorPlan) -> list[NDArray[np.floating]]:
+    """Return where the scanner stands: a disturbed lattice in every room, off the furniture."""
+    places: list[NDArray[np.floating]] = []
+    for room in plan.rooms:
+        left, bottom, right, top = room.rect.grown(-0.6)
+        for x in np.linspace(left, right, 1 + round((right - left) / SPACING)):
+            for y in np.linspace(bottom, top, 1 + round((top - bottom) / SPACING)):
+                place = np.array([x, y]) + rng.uniform(-0.2, 0.2, 2)
+                if _is_clear(plan.material, place):
+                    places.append(place)
+    return places
+
+
+def _is_clear(material: NDArray[np.uint8], place: NDArray[np.floating]) -> bool:
+    around = Rect(*place, *place).grown(ROOM_TO_STAND)
+    left, bottom, right, top = (round(edge / CELL) for edge in around)
+    return bool((material[bottom:top, left:right] == AIR).all())
+
+
+def _scan(
+    rng: np.random.Generator,
+    material: NDArray[np.uint8],
+    place: NDArray[np.floating],
+    step: float,
+) -> tuple[NDArray[np.floating], NDArray[np.floating]]:
+    """Return the points (k, 2) where rays ended, and those (m, 2) that they went through."""
+    angles = (np.arange(RAYS) + rng.random()) * (2 * np.pi / RAYS)
+    ranges = (np.arange(round(RANGE / step)) + 0.5) * step
+    met = _material_at(material, _along(place, angles, ranges))
+    sees_glass = rng.random(RAYS) < SEES_GLASS
+    stops = (met == SOLID) | ((met == GLASS) & sees_glass[:, None])
+    stopped = stops.any(axis=1)
+    first = np.where(stopped, stops.argmax(axis=1), ranges.size)
+    *shift, turn = (rng.random(3) - rng.random(3)) * DRIFT
+    drawn = _along(place + shift, angles + turn, ranges)
+    crossed = drawn[np.arange(ranges.size) < first[:, None]]
+    noise = (rng.random(RAYS) - rng.random(RAYS)) * NOISE
+    reach = ranges[first[stopped]] + noise[stopped]
+    ends = _along(place + shift, angles[stopped] + turn, reach[:, None])[:, 0]
+    return ends, crossed
+
+
+def _along(
+    place: NDArray[np.floating], angles: NDArray[np.floating], ranges: NDArray[np.floating]
+) -> NDArray[np.floating]:
+    """Return the points (rays, steps, 2) of rays from a place, at common or own ranges."""
+    directions = np.stack([np.cos(angles), np.sin(angles)], axis=1)
+    return place + directions[:, None, :] * ranges[..., None]
+
+
+def _material_at(material: NDArray[np.uint8], points: NDArray[np.floating]) -> NDArray[np.uint8]:
+    """Return the material at points (..., 2); outdoors there is air."""
+    columns, rows = np.moveaxis(np.floor(points / CELL).astype(int), -1, 0)
+    height, width = material.shape
+    inside = (columns >= 0) & (columns < width) & (rows >= 0) & (rows < height)
+    return np.where(inside, material[rows * inside, columns * inside], AIR)

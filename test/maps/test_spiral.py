@@ -1,0 +1,123 @@
+"""The spiral is one corridor, as wide as asked for, from its start to its goal."""
+
+import cv2
+from hnr_planner.maps import Spiral, spiral
+import numpy as np
+from numpy.typing import NDArray
+import pytest
+
+WIDTHS = (0.4, 0.6, 0.8, 1.0, 1.2, 1.6, 2.0, 2.4)
+FAT = ((0.4, 2.4), (0.6, 1.8), (1.2, 2.4), (1.6, 2.4))
+FAMILIES = [(width, None) for width in WIDTHS] + list(FAT)
+
+
+@pytest.fixture(params=FAMILIES, ids=str)
+def made(request: pytest.FixtureRequest) -> Spiral:
+    width, middle_width = request.param
+    return spiral(width, middle_width=middle_width)
+
+
+def pieces(mask: NDArray[np.bool_], connectivity: int = 4) -> int:
+    """Count the connected pieces of a mask."""
+    return cv2.connectedComponents(mask.astype(np.uint8), connectivity=connectivity)[0] - 1
+
+
+def opened(mask: NDArray[np.bool_], side: int) -> NDArray[np.bool_]:
+    """Return what squares of so many cells cover that fit into the mask."""
+    square = np.ones((side, side), np.uint8)
+    walled = np.pad(mask, side).astype(np.uint8)
+    corners = cv2.erode(walled, square, anchor=(0, 0))
+    covered = cv2.dilate(corners, square, anchor=(side - 1, side - 1))
+    return covered[side:-side, side:-side] > 0
+
+
+def cell(made: Spiral, point: tuple[float, float]) -> tuple[int, int]:
+    x, y = point
+    return int(y / made.resolution), int(x / made.resolution)
+
+
+def test_free_cells_are_one_piece_without_a_hole(made: Spiral) -> None:
+    assert pieces(~made.blocked) == 1
+    assert pieces(made.blocked, connectivity=8) == 1
+    edge = np.concatenate([made.blocked[[0, -1]].ravel(), made.blocked[:, [0, -1]].ravel()])
+    assert edge.all()
+
+
+def steps_from(made: Spiral, point: tuple[float, float]) -> NDArray[np.int_]:
+    """Flood the free cells from a point: the number of steps to each, -1 for blocked ones."""
+    steps = np.full(made.blocked.shape, -1)
+    front = [cell(made, point)]
+    steps[front[0]] = 0
+    while front:
+        reached = []
+        for row, column in front:
+            around = ((row + 1, column), (row - 1, column), (row, column + 1), (row, column - 1))
+            for place in around:
+                if not made.blocked[place] and steps[place] < 0:
+                    steps[place] = steps[row, column] + 1
+                    reached.append(place)
+        front = reached
+    return steps
+
+
+def test_goal_is_the_far_end_of_the_corridor(made: Spiral) -> None:
+    steps = steps_from(made, made.start)
+    # Behind the goal there is only the end of the corridor: half a square of its width.
+    beyond = (steps.max() - steps[cell(made, made.goal)]) * made.resolution
+    assert 0 < beyond <= 2 * made.goal_radius
+
+
+def test_corridor_is_nowhere_narrower_than_asked(made: Spiral) -> None:
+    width = round(2 * made.goal_radius / made.resolution)
+    assert np.array_equal(opened(~made.blocked, width), ~made.blocked)
+
+
+@pytest.mark.parametrize('width', WIDTHS)
+def test_corridor_is_nowhere_wider_than_asked(width: float) -> None:
+    made = spiral(width)
+    side = round(width / made.resolution) + 1
+    assert not opened(~made.blocked, side).any()
+
+
+@pytest.mark.parametrize(('width', 'middle_width'), FAT)
+def test_one_arm_is_fatter(width: float, middle_width: float) -> None:
+    made = spiral(width, middle_width=middle_width)
+    for side, arms in ((middle_width, 1), (middle_width + 0.04, 0), (width + 0.04, 1)):
+        assert pieces(opened(~made.blocked, round(side / made.resolution))) == arms
+
+
+@pytest.mark.parametrize('width', WIDTHS)
+def test_start_is_at_the_bottom_left_and_leads_up(width: float) -> None:
+    made = spiral(width)
+    assert made.start == pytest.approx((0.1 + width / 2, 0.1 + width / 2))
+    assert made.goal_radius == pytest.approx(width / 2)
+    row, column = cell(made, made.start)
+    free = ~made.blocked
+    assert np.flatnonzero(free[:, column])[0] == 5
+    assert free[row:-5, column].all()
+    beside = column + round(width / made.resolution)
+    assert not free[row, column:beside].all()
+
+
+def test_lengths_are_rounded_to_cells() -> None:
+    made = spiral(1.004, resolution=0.05, size=5.02)
+    assert made.blocked.shape == (100, 100)
+    assert made.goal_radius == pytest.approx(0.5)
+
+
+@pytest.mark.parametrize(
+    ('arguments', 'reason'),
+    [
+        ({'width': 0.0}, 'width must be finite and at least half a cell, not 0.0'),
+        ({'width': float('nan')}, 'width must be finite'),
+        ({'width': 1.0, 'wall': 0.001}, 'wall must be'),
+        ({'width': 1.0, 'size': float('inf')}, 'size must be'),
+        ({'width': 1.0, 'resolution': 0.0}, 'resolution must be'),
+        ({'width': 1.0, 'middle_width': 0.0}, 'middle_width must be'),
+        ({'width': 9.9}, 'a corridor of width 9.9 does not fit into a square of 10.0'),
+        ({'width': 1.0, 'middle_width': 9.0}, 'a middle arm of width 9.0 does not fit'),
+    ],
+)
+def test_lengths_that_make_no_spiral(arguments: dict[str, float], reason: str) -> None:
+    with pytest.raises(ValueError, match=reason):
+        spiral(**arguments)
