@@ -1,11 +1,11 @@
 """The checker itself: it sees every collision that matters and passes what is legal."""
 
 from fractions import Fraction
+from test.brute_force import blocked_cells, chord_by_search, path_collisions
 
 import numpy as np
+from numpy.typing import NDArray
 import pytest
-
-from test.brute_force import blocked_cells, chord_by_search, path_collisions
 
 FREE = np.zeros((10, 10), dtype=bool)
 
@@ -16,6 +16,10 @@ def with_blocked(*cells, shape=(10, 10)):
     for row, col in cells:
         blocked[row, col] = True
     return blocked
+
+
+def ends(lower, upper):
+    return Fraction(lower), Fraction(upper)
 
 
 def in_map_frame(points, resolution, origin):
@@ -30,7 +34,7 @@ WALL = with_blocked(*((row, 5) for row in range(10)))
 RISING = with_blocked((4, 4), (5, 5))
 FALLING = with_blocked((4, 5), (5, 4))
 
-COLLISIONS = {
+COLLISIONS: dict[str, tuple[NDArray, list]] = {
     'through a wall': (WALL, [(2, 2), (8, 3)]),
     'through a wall, from far between two points only': (WALL, [(0.1, 0.1), (9.9, 9.9)]),
     'into a wall': (WALL, [(2, 2), (5.5, 2)]),
@@ -72,12 +76,12 @@ COLLISIONS = {
     'a map without a free cell': (np.ones((1, 1), bool), [(0.5, 0.5)]),
 }
 
-EXACT_COLLISIONS = {
+EXACT_COLLISIONS: dict[str, tuple[NDArray, list]] = {
     'squeezes exactly along an edge': (RISING, [(4.9, 5), (5.1, 5)]),
     'a point exactly in a squeeze': (FALLING, [(5, 5)]),
 }
 
-LEGAL = {
+LEGAL: dict[str, tuple[NDArray, list]] = {
     'an empty map': (FREE, [(0.5, 0.5), (9.5, 0.7), (5, 9)]),
     'a single point': (WALL, [(1, 1)]),
     'a segment of length zero': (WALL, [(1, 1), (1, 1)]),
@@ -221,22 +225,22 @@ def test_the_checker_inflates_when_asked():
     ],
 )
 def test_chord_beside_a_wall(point, direction, expected):
-    assert chord_by_search(WALL, point, direction) == expected
+    assert chord_by_search(WALL, point, direction) == ends(*expected)
 
 
 def test_chord_ends_where_it_touches_a_corner():
-    assert chord_by_search(with_blocked((4, 4)), (4, 6), (1, -1)) == (-4, 1)
+    assert chord_by_search(with_blocked((4, 4)), (4, 6), (1, -1)) == ends(-4, 1)
     assert chord_by_search(with_blocked((4, 4)), (4, 6 + 1e-12), (1, -1))[1] > 5
 
 
 def test_chord_ends_where_it_runs_along_an_edge():
-    assert chord_by_search(with_blocked((4, 4)), (5, 1), (0, 1)) == (-1, 3)
-    assert chord_by_search(with_blocked((4, 4)), (5 + 1e-12, 1), (0, 1)) == (-1, 9)
+    assert chord_by_search(with_blocked((4, 4)), (5, 1), (0, 1)) == ends(-1, 3)
+    assert chord_by_search(with_blocked((4, 4)), (5 + 1e-12, 1), (0, 1)) == ends(-1, 9)
 
 
 def test_chord_does_not_squeeze():
-    assert chord_by_search(RISING, (4, 6), (1, -1)) == (-4, 1)
-    assert chord_by_search(RISING, (5, 5), (1, -1)) == (0, 0)
+    assert chord_by_search(RISING, (4, 6), (1, -1)) == ends(-4, 1)
+    assert chord_by_search(RISING, (5, 5), (1, -1)) == ends(0, 0)
 
 
 def test_chord_is_exact_where_floats_are_not():
@@ -247,7 +251,7 @@ def test_chord_is_exact_where_floats_are_not():
 
 
 def test_chord_in_metres_is_the_chord_in_cells():
-    assert chord_by_search(WALL, (1.25, 2.25), (1, 0), 0.5, (-1.0, 1.0)) == (-2.25, 0.25)
+    assert chord_by_search(WALL, (1.25, 2.25), (1, 0), 0.5, (-1.0, 1.0)) == ends(-2.25, 0.25)
 
 
 def test_a_direction_of_length_zero_is_refused():
@@ -265,7 +269,7 @@ def test_checker_and_exact_chord_agree_on_random_segments():
         if rng.random() < 0.3:
             # Lines over lattice points, where ties are.
             b = np.clip(np.round(a) + 2 * (np.round(a) - a), 0, [8, 6])
-        if np.array_equal(a, b) or chord_by_search(blocked, a, b - a) == (0, 0):
+        if np.array_equal(a, b) or chord_by_search(blocked, a, b - a) == ends(0, 0):
             continue
         upper = chord_by_search(blocked, a, b - a)[1]
         margin = float(upper - 1) * np.linalg.norm(b - a)

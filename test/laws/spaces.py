@@ -1,18 +1,17 @@
 """Every space that the laws are held on: a further space is one more entry in SPACES."""
 
 from collections.abc import Callable
-
-import numpy as np
+from test.laws import maps
 
 from hnr_planner.core import GridSpace
-from test.laws import maps
+import numpy as np
 
 TURNED = (3.0, -2.0, 0.7)
 SHIFTED = (-12.3, 4.56, 0.0)
 
 
 def _surveyed() -> GridSpace:
-    """Return a grid as a map server gives it: occupied, free and unknown, with a robot's radius."""
+    """Return a grid as a survey gives it: occupied, free and unknown, with a robot's radius."""
     data = np.where(maps.rooms(24, 30, 8, seed=3), 100, 0).astype(np.int8)
     data[:3, :5] = -1
     data[20, 20] = 64

@@ -5,10 +5,10 @@ Points and directions are drawn at random: lines that touch a corner exactly hav
 zero here, and tests of their own where a space has corners.
 """
 
+from test.laws.spaces import SPACES
+
 import numpy as np
 import pytest
-
-from test.laws.spaces import SPACES
 
 N = 200
 BAD_NUMBERS = (np.nan, np.inf, -np.inf)
@@ -33,7 +33,8 @@ def size(space):
 def random_points(space, rng, n=N):
     """Return points of the bounds grown by a tenth on every side, so that some lie outside."""
     lower, upper = space.bounds
-    return rng.uniform(lower - 0.1 * (upper - lower), upper + 0.1 * (upper - lower), (n, space.dim))
+    rim = 0.1 * (upper - lower)
+    return rng.uniform(lower - rim, upper + rim, (n, space.dim))
 
 
 def free_points(space, rng, n=N):

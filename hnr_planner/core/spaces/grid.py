@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 from hnr_planner.core.checks import check_point, check_points, Floats
-from hnr_planner.core.errors import SpaceError
+from hnr_planner.core.errors import RequestError, SpaceError
 from hnr_planner.core.spaces.clearance import path_clearance, point_clearance
 from hnr_planner.core.spaces.grid_fields import components, free_distance, inflate
 from hnr_planner.core.spaces.grid_frame import GridFrame
@@ -277,7 +277,10 @@ class GridSpace(Space):
 
     def path_clearance(self, path: ArrayLike) -> float:
         """Return the least clearance [m] along the whole of a path (m, 2); inf without walls."""
-        cells = self.frame.to_cells(np.atleast_2d(check_points('path', path, 2)))
+        points = check_points('path', path, 2)
+        if points.ndim != 2 or len(points) == 0 or not np.isfinite(points).all():
+            raise RequestError(f'path must be at least one finite point (m, 2), got {path!r}')
+        cells = self.frame.to_cells(points)
         return float(path_clearance(self._wall_distance, cells)) * self.scale
 
 

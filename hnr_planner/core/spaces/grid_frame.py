@@ -75,14 +75,15 @@ class GridFrame:
 
     def to_map(self, cells: Floats) -> Floats:
         """Bring points (..., 2) of the kernel frame into the map frame [m]."""
-        return ((cells - self.RIM) * self.resolution) @ self._turn.T + self.origin[:2]
+        return _turned((cells - self.RIM) * self.resolution, self.origin[2]) + self.origin[:2]
 
     def turn_to_grid(self, directions: Floats) -> Floats:
         """Turn directions (..., 2) of the map frame into the grid's frame."""
-        return directions @ self._turn
+        return _turned(directions, -self.origin[2])
 
-    @cached_property
-    def _turn(self) -> Floats:
-        """Rotation by yaw: columns are the grid's axes in the map frame."""
-        cos, sin = math.cos(self.origin[2]), math.sin(self.origin[2])
-        return np.array([(cos, -sin), (sin, cos)])
+
+def _turned(points: Floats, angle: float) -> Floats:
+    """Turn points (..., 2) by ``angle`` [rad]; one point or many, the same to the last bit."""
+    cos, sin = math.cos(angle), math.sin(angle)
+    x, y = points[..., 0], points[..., 1]
+    return np.stack([x * cos - y * sin, x * sin + y * cos], axis=-1)

@@ -106,7 +106,9 @@ class Space(ABC):
 
         """
         points = check_points('points', points, self.dim)
-        free = are_free(self.data, self.to_kernel(np.atleast_2d(points)))
+        with np.errstate(invalid='ignore'):  # infinite points are nowhere, and so not free
+            inside = self.to_kernel(np.atleast_2d(points))
+        free = are_free(self.data, inside)
         return bool(free[0]) if points.ndim == 1 else free
 
     def chord(self, point: ArrayLike, direction: ArrayLike) -> Chord:

@@ -5,13 +5,6 @@ Every p-value is compared with ALPHA, with fixed seeds: were the seeds drawn ane
 would fail one of these tests in about one run of a thousand.
 """
 
-import numba
-import numpy as np
-import pytest
-from scipy import stats
-
-from hnr_planner.core import GridSpace, sample
-from hnr_planner.core.sampling.walks import coordinate_hit_and_run_step, hit_and_run_step
 from test.laws import maps
 from test.sampling_gate import (
     one_step,
@@ -22,6 +15,13 @@ from test.sampling_gate import (
     t5_ends,
     unit,
 )
+
+from hnr_planner.core import GridSpace, sample
+from hnr_planner.core.sampling.walks import coordinate_hit_and_run_step, hit_and_run_step
+import numba
+import numpy as np
+import pytest
+from scipy import stats
 
 ALPHA = 0.001 / 20
 N_ONE_STEP = 1_000_000
@@ -42,7 +42,7 @@ ONE_STEP = pytest.mark.parametrize(
 )
 
 
-# -- the walks of the package ------------------------------------------------------------------------
+# -- the walks of the package ---------------------------------------------------------------------
 
 
 @numba.njit
@@ -127,7 +127,7 @@ def test_draws_are_uniform_in_the_end(region, corner, walk):
     assert stats.chisquare(np.bincount(cells, minlength=region.n_cells)).pvalue > ALPHA
 
 
-# -- walks that are wrong, and a right one -----------------------------------------------------------
+# -- walks that are wrong, and a right one --------------------------------------------------------
 
 
 def right(region, points, rng):
@@ -189,12 +189,12 @@ def on_chord(region, points, directions, fractions):
 
 
 def p_values(walk, region, point):
-    """Return the p-value of every test of the gate."""
+    """Return the p-value of every test of the gate; fewer steps for T1 are enough here."""
 
     def step(points, rng):
         return walk(region, points, rng)
 
-    direction, position = one_step(region, step, point, N_ONE_STEP, seed=8)
+    direction, position = one_step(region, step, point, N_ONE_STEP // 5, seed=8)
     return {
         'T1': t1_uniform_on_the_square(direction, position),
         'T2': t2_stationarity(region, step, N_STATIONARITY, seed=9),
@@ -215,11 +215,9 @@ def p_values(walk, region, point):
         (ends_cut, ('T5',)),
         (both_axes_in_turn, ('T3',)),
     ],
+    ids=lambda value: getattr(value, '__name__', ''),
 )
-@pytest.mark.parametrize(
-    ('region', 'point'), [(U_SHAPE, (0.7, 8.3)), (TWO_ROOMS, (4.6, 3.3))], ids=['u shape', 'rooms']
-)
-def test_the_gate_catches_what_is_wrong_and_passes_what_is_right(region, point, walk, caught_by):
-    found = p_values(walk, region, point)
+def test_the_gate_catches_what_is_wrong_and_passes_what_is_right(walk, caught_by):
+    found = p_values(walk, U_SHAPE, (0.7, 8.3))
     assert all(found[test] < ALPHA for test in caught_by), found
     assert caught_by or min(found.values()) > ALPHA, found
