@@ -9,7 +9,8 @@ from test.laws import maps
 
 from hnr_planner.core import GridSpace, kernels
 from hnr_planner.core.kernels import interpreted
-from hnr_planner.core.planning import nearest, rrt, simplify
+from hnr_planner.core.planning import frontier, nearest, rrt, simplify
+from hnr_planner.core.planning import hit_and_run_connect as connect
 from hnr_planner.core.planning.hit_and_run import _walk
 from hnr_planner.core.planning.search import Problem
 from hnr_planner.core.sampling.sample import run_chain
@@ -90,7 +91,7 @@ def test_without_a_folder_to_write_kernels_are_kept_for_this_run_with_a_warning(
 
 GRID = GridSpace.from_blocked(maps.rooms(40, 40, 10, seed=1), 0.05)
 LOWER, UPPER = GRID.kernel_bounds
-PROBLEM = Problem(GRID.data, LOWER, UPPER, LOWER + 1.5, UPPER - 1.5, 0.0, GRID.margin)
+PROBLEM = Problem(GRID.data, LOWER, UPPER, LOWER + 1.5, UPPER - 1.5, 0.0, GRID.margin, 5.0)
 
 
 def both(kernel, *arguments):
@@ -153,6 +154,28 @@ def test_rrt():
         done = grow(far, np.inf, rng, vertices, parents, 1, tree, 300)
         outcome.extend([done, vertices, parents, tuple(tree)])
     assert_same(compiled, plain)
+
+
+def test_hit_and_run_connect():
+    outcomes = []
+    for plant, grow in (
+        (connect._plant, connect._grow),
+        (interpreted(connect._plant), interpreted(connect._grow)),
+    ):
+        search = connect.HitAndRunConnectSearch(PROBLEM, np.random.default_rng(5))
+        trees = search._trees._replace(
+            vertices=np.zeros((300, 2)),
+            parents=np.zeros(300, dtype=np.int64),
+            members=np.zeros((300, 2), dtype=np.int64),
+            sizes=np.zeros(2, dtype=np.int64),
+            frontier=frontier.empty_frontier(LOWER, UPPER, 5.0),
+        )
+        ends = plant(PROBLEM, trees)
+        done = grow(PROBLEM, trees, search.rng, 0, 200)
+        rows = int(trees.sizes.sum())
+        assert rows > 10
+        outcomes.append([ends, done[0], done[1:], trees.vertices[:rows], trees.parents[:rows]])
+    assert_same(*outcomes)
 
 
 def test_simplify():

@@ -6,14 +6,15 @@ from typing import Any
 from hnr_planner.core.checks import check_choice
 from hnr_planner.core.errors import RequestError
 from hnr_planner.core.planning.hit_and_run import HitAndRun
+from hnr_planner.core.planning.hit_and_run_connect import HitAndRunConnect
 from hnr_planner.core.planning.rrt import RRT
 from hnr_planner.core.planning.search import Planner
 
 #: What ``auto`` stands for.
-BEST = 'rrt'
+BEST = 'hit_and_run_connect'
 
-_PLANNERS: dict[str, type[HitAndRun] | type[RRT]] = {
-    planner.name: planner for planner in (HitAndRun, RRT)
+_PLANNERS: dict[str, type[HitAndRun] | type[RRT] | type[HitAndRunConnect]] = {
+    planner.name: planner for planner in (HitAndRun, RRT, HitAndRunConnect)
 }
 
 #: Names that ``plan`` takes.

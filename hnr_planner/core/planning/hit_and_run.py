@@ -10,7 +10,7 @@ from typing import ClassVar
 
 from hnr_planner.core.checks import Floats
 from hnr_planner.core.kernels import kernel
-from hnr_planner.core.planning.search import Problem, reaches_goal, with_room
+from hnr_planner.core.planning.search import Problem, reaches_goal, to_goal, with_room
 from hnr_planner.core.sampling.walks import hit_and_run_step
 import numpy as np
 from numpy.typing import NDArray
@@ -56,6 +56,11 @@ class HitAndRunSearch:
     def parents(self) -> NDArray[np.int64]:
         """Each sample was reached from the one before."""
         return np.arange(-1, self._length - 1)
+
+    @property
+    def path(self) -> Floats:
+        """The whole chain, and the goal."""
+        return to_goal(self.problem, self.samples)
 
     @property
     def counts(self) -> dict[str, int]:

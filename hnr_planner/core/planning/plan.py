@@ -19,7 +19,7 @@ from hnr_planner.core.planning.result import (
     PlannerStatus,
     PlanResult,
 )
-from hnr_planner.core.planning.search import branch, Planner, Problem, Search
+from hnr_planner.core.planning.search import Planner, Problem, Search
 from hnr_planner.core.planning.simplify import shorten
 from hnr_planner.core.spaces.space import Space
 import numpy as np
@@ -139,6 +139,7 @@ class _Request:
             goal=self.space.to_kernel(self.goal),
             goal_radius=self.goal_radius / self.space.scale,
             margin=self.space.margin,
+            clearance=self.space.typical_clearance,
         )
 
     def failure(self, status: PlannerStatus, message: str) -> PlanResult:
@@ -223,11 +224,11 @@ def _unsolved(
 
 def _path_found(request: _Request, search: Search) -> Floats:
     """Path (m, dim) of a solved search, caller's frame; its ends are the caller's own numbers."""
-    path = request.space.from_kernel(branch(search))
+    path = request.space.from_kernel(search.path)
     path[0] = request.start
     if request.goal_radius == 0.0:
-        return np.vstack([path, request.goal])
-    return path if len(path) > 1 else np.vstack([path, path])
+        path[-1] = request.goal
+    return path
 
 
 def _improve(
@@ -264,7 +265,9 @@ def _compile(space: Space, planner: Planner) -> None:
     if kinds in _compiled:
         return
     lower, upper = space.kernel_bounds
-    problem = Problem(space.data, lower, upper, lower, upper, 0.0, space.margin)
+    problem = Problem(
+        space.data, lower, upper, lower, upper, 0.0, space.margin, space.typical_clearance
+    )
     rng = np.random.default_rng(0)
     search = planner.start(problem, rng, space.scale)
     search.advance(0)

@@ -13,7 +13,7 @@ from hnr_planner.core.checks import check_number, Floats
 from hnr_planner.core.errors import RequestError
 from hnr_planner.core.kernels import kernel
 from hnr_planner.core.planning.nearest import BoxTree, empty_box_tree, grown, insert, nearest
-from hnr_planner.core.planning.search import Problem, reaches_goal, with_room
+from hnr_planner.core.planning.search import branch, Problem, reaches_goal, to_goal, with_room
 from hnr_planner.core.spaces.primitives import contains, leave
 import numpy as np
 from numpy.typing import NDArray
@@ -79,6 +79,12 @@ class RRTSearch:
     def parents(self) -> NDArray[np.int64]:
         """Index (k,) of the vertex that each was extended from."""
         return self._parents[: self._n_vertices]
+
+    @property
+    def path(self) -> Floats:
+        """The branch of the newest vertex, and the goal."""
+        last = self._n_vertices - 1
+        return to_goal(self.problem, branch(self._vertices, self._parents, last))
 
     @property
     def counts(self) -> dict[str, int]:

@@ -32,6 +32,8 @@ class Problem(NamedTuple):
         Radius of the goal region; 0 when the path has to end exactly at the goal.
     margin : float
         Distance from a chord's end at which one stops.
+    clearance : float
+        What a free point is away from the boundary, roughly and on average.
 
     """
 
@@ -42,6 +44,7 @@ class Problem(NamedTuple):
     goal: Floats
     goal_radius: float
     margin: float
+    clearance: float
 
 
 @kernel
@@ -64,7 +67,7 @@ class Search(Protocol):
 
     @property
     def solved(self) -> bool:
-        """Whether the newest sample reaches the goal."""
+        """Whether a path is known."""
 
     @property
     def samples(self) -> Floats:
@@ -73,6 +76,10 @@ class Search(Protocol):
     @property
     def parents(self) -> NDArray[np.int64]:
         """Index (k,) of the sample that each was reached from; -1 for the start."""
+
+    @property
+    def path(self) -> Floats:
+        """Path (m, dim) of a solved search: from the start into the region, or to the goal."""
 
     @property
     def counts(self) -> dict[str, int]:
@@ -93,14 +100,21 @@ class Planner(Protocol):
         """Start a search; ``scale`` is the caller's units [m] in one of the kernel frame."""
 
 
-def branch(search: Search) -> Floats:
-    """Return the samples (m, dim) from the start to the newest one, along the parents."""
-    parents, k = search.parents, len(search.parents) - 1
-    indices = []
+def branch(samples: Floats, parents: NDArray[np.int64], k: int) -> Floats:
+    """Return the samples (m, dim) from the root of sample ``k`` to ``k``, along the parents."""
+    rows = []
     while k >= 0:
-        indices.append(k)
+        rows.append(k)
         k = int(parents[k])
-    return search.samples[indices[::-1]]
+    return samples[rows[::-1]]
+
+
+def to_goal(problem: Problem, points: Floats) -> Floats:
+    """Return ``points`` (m, dim), whose last one reaches the goal, with an exact goal added."""
+    if problem.goal_radius > 0.0 and len(points) > 1:
+        return points
+    end = problem.goal if problem.goal_radius == 0.0 else points[-1]
+    return np.vstack([points, end])
 
 
 def with_room(array: NDArray[Any], rows: int) -> NDArray[Any]:

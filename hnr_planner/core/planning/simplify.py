@@ -179,8 +179,10 @@ def _point_on(points, along, k, s):
 @kernel
 def _joined(points, i, a, b, j):
     """Path with everything between vertices ``i`` and ``j`` replaced by the segment a-b."""
-    shorter = np.empty((i + 3 + len(points) - j, points.shape[1]))
-    shorter[: i + 1] = points[: i + 1]
-    shorter[i + 1], shorter[i + 2] = a, b
-    shorter[i + 3 :] = points[j:]
+    kept = i + 1
+    shorter = np.empty((kept + 2 + len(points) - j, points.shape[1]))
+    shorter[:kept] = points[:kept]
+    shorter[kept], shorter[kept + 1] = a, b
+    tail = kept + 2
+    shorter[tail:] = points[j:]
     return shorter

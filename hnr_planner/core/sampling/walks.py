@@ -19,7 +19,9 @@ REDRAWS_MAX = 100
 @kernel
 def hit_and_run_step(space, x, rng, y):
     """Take a step of Hit-and-Run: uniform direction, uniform point of its chord (paper, 1)."""
-    return draw_on_chord(space, x, draw_direction(rng, len(x)), rng, y)
+    u = np.empty(len(x))
+    draw_direction(rng, u)
+    return draw_on_chord(space, x, u, rng, y)
 
 
 @kernel
@@ -31,21 +33,19 @@ def coordinate_hit_and_run_step(space, x, rng, y):
 
 
 @kernel
-def draw_direction(rng, dim):
-    """Draw a direction uniformly from the unit sphere."""
-    u = np.empty(dim)
-    if dim == 2:
+def draw_direction(rng, u):
+    """Draw ``u`` uniformly from the unit sphere."""
+    if len(u) == 2:
         angle = 2.0 * math.pi * rng.random()
         u[0], u[1] = math.cos(angle), math.sin(angle)
-        return u
+        return
     squared = 0.0
     while squared == 0.0:
-        for i in range(dim):
+        for i in range(len(u)):
             u[i] = rng.standard_normal()
             squared += u[i] * u[i]
-    for i in range(dim):
+    for i in range(len(u)):
         u[i] /= math.sqrt(squared)
-    return u
 
 
 @kernel
@@ -53,6 +53,12 @@ def draw_on_chord(space, x, u, rng, y):
     """Draw ``y`` uniformly from the chord of ``x`` along ``u``; return the draws thrown away."""
     upper = leave(space, x, u, 0.0, math.inf)
     lower = -leave(space, x, -u, 0.0, math.inf)
+    return draw_between(space, x, u, lower, upper, rng, y)
+
+
+@kernel
+def draw_between(space, x, u, lower, upper, rng, y):
+    """Draw ``y = x + s u`` with ``s`` uniform in a part (lower, upper) of the chord; likewise."""
     for redraws in range(REDRAWS_MAX):
         s = lower + (upper - lower) * rng.random()
         for i in range(len(x)):

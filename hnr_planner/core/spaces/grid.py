@@ -1,6 +1,7 @@
 """An occupancy grid as a space: what is free, what is connected, how far the walls are."""
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, Literal
 
 from hnr_planner.core.checks import check_point, check_points, Floats
@@ -14,6 +15,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 Bools = NDArray[np.bool_]
+
+#: Cells looked at, about, for a mean over all of a map.
+TYPICAL_CELLS = 10_000
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -158,6 +162,14 @@ class GridSpace(Space):
         """Distance from a chord's end at which one stops, never below what coordinates resolve."""
         return max(super().margin, 8.0 * self.frame.rounding)
 
+    @cached_property
+    def typical_clearance(self) -> float:
+        """Mean distance in king's moves from a free cell to a blocked one, over a sample."""
+        stride = max(1, int(np.sqrt(self._labels.size / TYPICAL_CELLS)))
+        distance = self.data.free_distance[::stride, ::stride]
+        free = distance[distance > 0]
+        return float(free.mean()) if free.size else 1.0
+
     def to_kernel(self, points: Floats) -> Floats:
         """Bring points (..., 2) [m] of the map frame into cells of the kernel frame."""
         return self.frame.to_cells(points)
@@ -209,7 +221,8 @@ class GridSpace(Space):
     def _is_near_wall(self, row: int, column: int) -> bool:
         reach = int(self.robot_radius / self.resolution) + 1
         top, left = max(row - reach, 0), max(column - reach, 0)
-        window = self.occupied[top : row + reach + 1, left : column + reach + 1]
+        bottom, right = row + reach + 1, column + reach + 1
+        window = self.occupied[top:bottom, left:right]
         return bool(inflate(window, self.robot_radius / self.resolution)[row - top, column - left])
 
     # -- what is connected -----------------------------------------------------------------------

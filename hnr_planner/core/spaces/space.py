@@ -68,6 +68,11 @@ class Space(ABC):
 
     @property
     @abstractmethod
+    def typical_clearance(self) -> float:
+        """Distance from a free point to the boundary, roughly and on average, kernel frame."""
+
+    @property
+    @abstractmethod
     def bounds(self) -> tuple[Floats, Floats]:
         """Lower and upper corner (dim,) of a box around the free points, caller's frame."""
 

@@ -232,7 +232,10 @@ def test_threads_plan_side_by_side_and_get_what_they_get_alone():
         ({'max_iterations': 1.5}, 'max_iterations must be a whole number, got 1.5'),
         ({'seed': -1}, 'seed must be at least 0, got -1'),
         ({'optimize_for': -1.0}, 'optimize_for must be in'),
-        ({'algorithm': 'dijkstra'}, "one of auto, hit_and_run, rrt, got 'dijkstra'"),
+        (
+            {'algorithm': 'dijkstra'},
+            "one of auto, hit_and_run, rrt, hit_and_run_connect, got 'dijkstra'",
+        ),
         ({'algorithm': 'hit_and_run', 'max_step': 1.0}, "no setting 'max_step'"),
         ({'algorithm': 'rrt', 'step': 1.0}, "no setting 'step'; it has max_step"),
         ({'algorithm': 'rrt', 'max_step': 0.0}, 'max_step must be above 0'),

@@ -1,12 +1,14 @@
 """The paper's two planners, each against its definition, and what holds for every planner."""
 
+from itertools import pairwise
 import math
 from test.brute_force import blocked_cells, chord_by_search, path_collisions
 from test.laws import maps
 
 from hnr_planner.core import ALGORITHMS, GridSpace, plan, PlannerStatus, RRT
 from hnr_planner.core.planning.algorithms import make_planner
-from hnr_planner.core.planning.search import branch, Problem
+from hnr_planner.core.planning.search import Problem
+from hnr_planner.maps import spiral
 import numpy as np
 from numpy.typing import NDArray
 import pytest
@@ -23,7 +25,14 @@ def start_search(algorithm: str, blocked: NDArray[np.bool_], seed: int, goal_rad
     space = GridSpace.from_blocked(blocked)
     lower, upper = space.kernel_bounds
     problem = Problem(
-        space.data, lower, upper, lower + 0.5, upper - 0.5, goal_radius, space.margin
+        space.data,
+        lower,
+        upper,
+        lower + 0.5,
+        upper - 0.5,
+        goal_radius,
+        space.margin,
+        space.typical_clearance,
     )
     return make_planner(algorithm, {}).start(problem, np.random.default_rng(seed), 1.0)
 
@@ -63,11 +72,11 @@ def test_every_edge_of_the_search_is_free(algorithm: str):
     result = plan(SPACE, START, GOAL, algorithm=algorithm, seed=7)
     np.testing.assert_allclose(result.samples[0], START, atol=1e-12)
     assert (result.parents < np.arange(len(result.parents))).all()
-    roots = result.parents == -1
-    assert roots[0] and roots.sum() == 1
-    for child, parent in zip(result.samples[1:], result.parents[1:], strict=True):
-        edge = [result.samples[parent], child]
-        assert path_collisions(edge, BLOCKED, 0.1, ORIGIN) == []
+    assert result.parents[0] == -1
+    for child, parent in zip(result.samples, result.parents, strict=True):
+        if parent >= 0:
+            edge = [result.samples[parent], child]
+            assert path_collisions(edge, BLOCKED, 0.1, ORIGIN) == []
 
 
 @pytest.mark.parametrize('algorithm', NAMES)
@@ -97,13 +106,19 @@ def test_a_solved_search_stays_as_it_is(algorithm: str):
 
 
 @pytest.mark.parametrize('algorithm', NAMES)
-def test_with_a_radius_the_goal_is_the_ball_and_no_sample_before_lies_in_it(algorithm: str):
+def test_with_a_radius_the_path_ends_in_the_ball(algorithm: str):
     result = plan(SPACE, START, GOAL, algorithm=algorithm, goal_radius=0.4, seed=1, simplify=False)
     assert result.status is PlannerStatus.SOLVED
+    assert np.hypot(*(result.path[-1] - GOAL)) <= 0.4
+    assert path_collisions(result.path, BLOCKED, 0.1, ORIGIN) == []
+
+
+@pytest.mark.parametrize('algorithm', ['hit_and_run', 'rrt'])
+def test_the_paper_s_planners_stop_at_the_first_sample_in_the_ball(algorithm: str):
+    result = plan(SPACE, START, GOAL, algorithm=algorithm, goal_radius=0.4, seed=1, simplify=False)
     from_goal = np.hypot(*(result.samples - GOAL).T)
     assert from_goal[-1] <= 0.4 < from_goal[:-1].min()
     np.testing.assert_allclose(result.path[-1], result.samples[-1], atol=1e-12)
-    assert path_collisions(result.path, BLOCKED, 0.1, ORIGIN) == []
 
 
 # -- Hit-and-Run, by its definition --------------------------------------------------------------
@@ -175,9 +190,10 @@ def test_the_path_of_rrt_is_the_branch_of_its_last_vertex():
     search = start_search('rrt', maps.rooms(60, 60, 10, seed=5), 3)
     while not search.solved:
         search.advance(100)
-    path = branch(search)
-    np.testing.assert_array_equal(path[[0, -1]], search.samples[[0, -1]])
-    rows = [int(np.flatnonzero((search.samples == x).all(axis=1))[0]) for x in path]
+    path = search.path
+    np.testing.assert_array_equal(path[-1], search.problem.goal)
+    np.testing.assert_array_equal(path[[0, -2]], search.samples[[0, -1]])
+    rows = [int(np.flatnonzero((search.samples == x).all(axis=1))[0]) for x in path[:-1]]
     assert [int(search.parents[k]) for k in rows[1:]] == rows[:-1]
 
 
@@ -198,3 +214,43 @@ def test_hundred_thousand_vertices_keep_their_nearest_parents():
     for k in range(99_000, 100_001, 50):
         squared = ((search.samples[:k] - search.samples[k]) ** 2).sum(axis=1)
         assert search.parents[k] == squared.argmin()
+
+
+# -- Hit-and-Run trees from both ends ------------------------------------------------------------
+
+
+@pytest.mark.parametrize('seed', range(5))
+def test_connect_has_a_tree_at_each_end_and_the_path_is_a_branch_of_each(seed: int):
+    search = start_search('hit_and_run_connect', maps.rooms(60, 60, 10, seed=5), seed)
+    assert not search.solved
+    while not search.solved:
+        search.advance(100)
+    samples, parents = search.samples, search.parents
+    np.testing.assert_array_equal(np.flatnonzero(parents == -1), [0, 1])
+    np.testing.assert_array_equal(samples[:2], [search.problem.start, search.problem.goal])
+    assert len(samples) == search.iterations + 2
+    rows = [int(np.flatnonzero((samples == x).all(axis=1))[0]) for x in search.path]
+    assert (rows[0], rows[-1]) == (0, 1)
+    bridges = [(a, b) for a, b in pairwise(rows) if parents[b] != a and parents[a] != b]
+    assert len(bridges) == 1
+
+
+def test_connect_finds_into_a_region_whose_centre_is_blocked():
+    centre = SPACE.cell_centres(55, 70)
+    assert not SPACE.contains(centre)
+    result = plan(SPACE, START, centre, algorithm='hit_and_run_connect', goal_radius=0.3, seed=1)
+    assert result.status is PlannerStatus.SOLVED
+    assert np.hypot(*(result.path[-1] - centre)) <= 0.3
+    assert (result.parents == -1).sum() == 1
+    assert path_collisions(result.path, BLOCKED, 0.1, ORIGIN) == []
+
+
+@pytest.mark.parametrize('width', [0.4, 0.8, 1.6])
+def test_connect_never_fails_on_a_spiral(width: float):
+    problem = spiral(width)
+    space = GridSpace.from_blocked(problem.blocked, problem.resolution)
+    for seed in range(30):
+        result = plan(
+            space, problem.start, problem.goal, algorithm='hit_and_run_connect', seed=seed
+        )
+        assert result.status is PlannerStatus.SOLVED

@@ -1,10 +1,9 @@
 """Draws: inside, repeatable, counted as asked, and refused where they cannot be."""
 
+from itertools import pairwise
 from test.laws import maps
 
 from hnr_planner.core import GridSpace, RequestError, sample, WALKS
-from itertools import pairwise
-
 import numpy as np
 import pytest
 

@@ -172,6 +172,13 @@ def ends_cut(region, points, rng):
     return on_chord(region, points, any_direction(points, rng), fractions)
 
 
+def never_quite_to_the_far_end(region, points, rng):
+    directions = any_direction(points, rng)
+    lower, upper = region.chords(points, directions)
+    fractions = rng.random(len(points))
+    return points + (lower + fractions * (0.998 * upper - lower))[:, None] * directions
+
+
 def both_axes_in_turn(region, points, rng):
     for axis in np.eye(2):
         directions = np.tile(axis, (len(points), 1))
@@ -213,6 +220,7 @@ def p_values(walk, region, point):
         (all_pieces_of_the_line, ('T1',)),
         (beta_on_the_chord, ('T1', 'T2')),
         (ends_cut, ('T5',)),
+        (never_quite_to_the_far_end, ('T5',)),
         (both_axes_in_turn, ('T3',)),
     ],
     ids=lambda value: getattr(value, '__name__', ''),

@@ -1,0 +1,213 @@
+"""
+Trees of Hit-and-Run steps from start and goal, joined as soon as they see each other.
+
+The paper's chain explores fast but wanders, and its path is the whole walk; it leaves hybrids with
+short paths to the future. Here each end of the request grows a tree. A vertex at its frontier
+takes a step like Hit-and-Run's that looks ahead: of a few uniform directions the one with the
+longest free ray, and a uniform point on the outer part of that ray. Each new vertex looks for the
+other tree among the vertices around it and at one anywhere.
+"""
+
+from dataclasses import dataclass, field
+from typing import ClassVar, NamedTuple
+
+from hnr_planner.core.checks import Floats
+from hnr_planner.core.kernels import kernel
+from hnr_planner.core.planning.frontier import (
+    add_to_bin,
+    choose_vertex,
+    empty_frontier,
+    Frontier,
+    NONE,
+)
+from hnr_planner.core.planning.search import branch, Problem, reaches_goal, to_goal, with_room
+from hnr_planner.core.sampling.walks import draw_between, draw_direction
+from hnr_planner.core.spaces.primitives import contains, leave, sees
+import numpy as np
+from numpy.typing import NDArray
+
+#: Uniform directions that a step chooses from, and the part of the longest ray that it leaves
+#: behind it at least: the best of 1 to 6 and of 0 to .9 on building maps and spirals.
+RAYS = 3
+INNER = 0.7
+
+
+class Trees(NamedTuple):
+    """
+    Two trees in one table: tree 0 grows from the start, tree 1 from the goal.
+
+    Attributes
+    ----------
+    vertices : (rows, dim)
+        Vertices of both trees, oldest first.
+    parents : (rows,) int64
+        Row of each vertex's parent, NONE for the roots.
+    members : (rows, 2) int64
+        Rows of the vertices of each tree.
+    sizes : (2,) int64
+        Vertices of each tree.
+    frontier : Frontier
+        Where each tree should grow.
+
+    """
+
+    vertices: Floats
+    parents: NDArray[np.int64]
+    members: NDArray[np.int64]
+    sizes: NDArray[np.int64]
+    frontier: Frontier
+
+
+@dataclass(frozen=True)
+class HitAndRunConnect:
+    """Trees of Hit-and-Run steps from both ends. It has no settings."""
+
+    name: ClassVar[str] = 'hit_and_run_connect'
+
+    def start(
+        self, problem: Problem, rng: np.random.Generator, scale: float
+    ) -> 'HitAndRunConnectSearch':
+        """Start a tree at each end."""
+        return HitAndRunConnectSearch(problem, rng)
+
+
+@dataclass
+class HitAndRunConnectSearch:
+    """
+    Two trees under way; a transition is one step of one of them, in turn.
+
+    A goal region whose centre is not free has no second tree: the first has to find into it.
+    """
+
+    problem: Problem
+    rng: np.random.Generator
+    iterations: int = field(init=False, default=0)
+    _redraws: int = field(init=False, default=0)
+    _trees: Trees = field(init=False)
+    _ends: tuple[int, int] = field(init=False)
+
+    def __post_init__(self) -> None:
+        problem, dim = self.problem, len(self.problem.start)
+        self._trees = Trees(
+            vertices=np.empty((2, dim)),
+            parents=np.empty(2, dtype=np.int64),
+            members=np.empty((2, 2), dtype=np.int64),
+            sizes=np.zeros(2, dtype=np.int64),
+            frontier=empty_frontier(problem.lower, problem.upper, problem.clearance),
+        )
+        self._ends = _plant(problem, self._trees)
+
+    @property
+    def solved(self) -> bool:
+        """Whether the trees are joined, or the first has come into the goal region."""
+        return self._ends[0] != NONE
+
+    @property
+    def samples(self) -> Floats:
+        """The vertices (k, dim) of both trees."""
+        return self._trees.vertices[: self._trees.sizes.sum()]
+
+    @property
+    def parents(self) -> NDArray[np.int64]:
+        """Index (k,) of the vertex that each was reached from; -1 for the two roots."""
+        return self._trees.parents[: self._trees.sizes.sum()]
+
+    @property
+    def path(self) -> Floats:
+        """Return the branch of each tree that leads to where they met."""
+        ahead, back = (branch(self.samples, self.parents, end) for end in self._ends)
+        return np.concatenate([ahead, back[::-1]]) if len(back) else to_goal(self.problem, ahead)
+
+    @property
+    def counts(self) -> dict[str, int]:
+        """Draws that rounded onto the boundary and were drawn again."""
+        return {'redraws': self._redraws}
+
+    def advance(self, n_iterations: int) -> None:
+        """Take at most ``n_iterations`` further steps."""
+        if self.solved:
+            return
+        rows = len(self.samples) + n_iterations
+        trees = self._trees
+        self._trees = trees._replace(
+            vertices=with_room(trees.vertices, rows),
+            parents=with_room(trees.parents, rows),
+            members=with_room(trees.members, rows),
+        )
+        self._ends, taken, redraws = _grow(
+            self.problem, self._trees, self.rng, self.iterations, n_iterations
+        )
+        self.iterations += taken
+        self._redraws += redraws
+
+
+@kernel
+def _plant(problem, trees):
+    """Plant a root at each end that is free; return the ends of a path that needs no search."""
+    trees.vertices[0] = problem.start
+    _add(trees, 0, NONE)
+    if contains(problem.space, problem.goal):
+        trees.vertices[1] = problem.goal
+        _add(trees, 1, NONE)
+        if sees(problem.space, problem.start, problem.goal):
+            return 0, 1
+    if problem.goal_radius > 0.0 and reaches_goal(problem, problem.start):
+        return 0, NONE
+    return NONE, NONE
+
+
+@kernel
+def _grow(problem, trees, rng, turn, n_iterations):
+    """Grow the trees in turn: ((row at the start's tree, row at the goal's), steps, redraws)."""
+    n_trees = 2 if trees.sizes[1] > 0 else 1
+    redraws = 0
+    for i in range(n_iterations):
+        tree = (turn + i) % n_trees
+        row = trees.sizes[0] + trees.sizes[1]
+        parent = choose_vertex(trees.frontier, tree, rng)
+        redraws += _step(problem.space, trees.vertices[parent], rng, trees.vertices[row])
+        at = _add(trees, tree, parent)
+        met = _meet(problem.space, trees, row, at, 1 - tree, rng)
+        if met != NONE:
+            return ((row, met) if tree == 0 else (met, row)), i + 1, redraws
+        if tree == 0 and problem.goal_radius > 0.0 and reaches_goal(problem, trees.vertices[row]):
+            return (row, NONE), i + 1, redraws
+    return (NONE, NONE), n_iterations, redraws
+
+
+@kernel
+def _step(space, x, rng, y):
+    """Step along the longest of a few uniform rays, to a uniform point of its outer part."""
+    u, best, longest = np.empty(len(x)), np.empty(len(x)), 0.0
+    for _ in range(RAYS):
+        draw_direction(rng, u)
+        reach = leave(space, x, u, 0.0, np.inf)
+        if reach > longest:
+            longest = reach
+            best[:] = u
+    return draw_between(space, x, best, INNER * longest, longest, rng, y)
+
+
+@kernel
+def _add(trees, tree, parent):
+    """Make the vertex written in the first free row one of a tree; return its bin."""
+    row = trees.sizes[0] + trees.sizes[1]
+    trees.parents[row] = parent
+    trees.members[trees.sizes[tree], tree] = row
+    trees.sizes[tree] += 1
+    return add_to_bin(trees.frontier, tree, trees.vertices[row], row)
+
+
+@kernel
+def _meet(space, trees, row, at, other, rng):
+    """Vertex of the other tree that is seen: the newest in a bin around, or one anywhere."""
+    if trees.sizes[other] == 0:
+        return NONE
+    newest, columns = trees.frontier.newest, trees.frontier.columns
+    for below in (-columns, 0, columns):
+        for beside in (-1, 0, 1):
+            k = newest[other, at + below + beside]
+            if k != NONE and sees(space, trees.vertices[row], trees.vertices[k]):
+                return k
+    k = trees.members[int(trees.sizes[other] * rng.random()), other]
+    return k if sees(space, trees.vertices[row], trees.vertices[k]) else NONE
