@@ -1,0 +1,197 @@
+"""The command ``plan``: a path between two points of a map."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import math
+from typing import TYPE_CHECKING
+
+from hnr_planner.cli.arguments import (
+    add_map_arguments,
+    BadInputError,
+    compile_kernels,
+    duration,
+    keep_map_files,
+    length,
+    number,
+    open_map,
+    picture,
+    whole,
+)
+
+if TYPE_CHECKING:
+    from hnr_planner.core import GridSpace, PlanResult
+    from hnr_planner.maps import OccupancyMap
+
+ALGORITHM_NAMES = (
+    'auto',
+    'hit_and_run',
+    'rrt',
+    'hit_and_run_connect',
+)  # those of the core, here so that --help is fast
+NO_PATH = 1
+EPILOG = """\
+example:
+  python -m hnr_planner plan office.yaml --start 2 3 --goal 30 20 --robot-radius 0.22 \\
+      --plot plan.png
+
+Exit code 0: a path was found. 1: none, and the status says why: INVALID_START, INVALID_GOAL,
+UNREACHABLE (proved), TIMEOUT or ITERATION_LIMIT. 2: the arguments or the map are not usable.
+The same seed gives the same path, unless a clock cut the search.
+"""
+
+
+def add_parser(commands: argparse._SubParsersAction) -> None:
+    """Add the command to the command line."""
+    parser = commands.add_parser(
+        'plan',
+        help='find a path between two points of a map',
+        description='Find a path between two points of a map, clear of obstacles for the robot.',
+        epilog=EPILOG,
+    )
+    add_map_arguments(parser)
+    for name in ('start', 'goal'):
+        parser.add_argument(
+            f'--{name}',
+            type=number,
+            nargs=2,
+            metavar=('X', 'Y'),
+            required=True,
+            help=f'the {name} in the frame of the map [m]',
+        )
+    parser.add_argument(
+        '--algorithm',
+        choices=ALGORITHM_NAMES,
+        default='auto',
+        help='how to search; default auto, the best there is for a map',
+    )
+    parser.add_argument(
+        '--goal-radius',
+        type=length,
+        default=0.0,
+        metavar='R',
+        help='a point this near to the goal will do [m]; default 0, exactly there',
+    )
+    parser.add_argument(
+        '--time-limit',
+        type=duration,
+        default=1.0,
+        metavar='S',
+        help='the longest the search may take [s]; default 1',
+    )
+    parser.add_argument(
+        '--optimize-for',
+        type=length,
+        default=0.0,
+        metavar='S',
+        help='once there is a path, look for a shorter one for this long [s]; default 0',
+    )
+    parser.add_argument(
+        '--seed', type=whole, metavar='N', help='seed of the random numbers; default a fresh one'
+    )
+    parser.add_argument(
+        '--no-simplify',
+        dest='simplify',
+        action='store_false',
+        help='leave the path as the search found it, with all its detours',
+    )
+    parser.add_argument('--json', action='store_true', help='print the result as a JSON object')
+    parser.add_argument(
+        '--plot', type=picture, metavar='FILE.png', help='draw map, samples and path'
+    )
+    parser.set_defaults(run=run)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Plan, print the result, draw it if asked, and return the exit code."""
+    from hnr_planner.core import plan, PlannerStatus
+
+    if arguments.optimize_for > arguments.time_limit:
+        raise BadInputError(
+            f'argument --optimize-for: {arguments.optimize_for:g} s is longer than the '
+            f'time limit of {arguments.time_limit:g} s'
+        )
+    occupancy, space = open_map(arguments)
+    keep_map_files(arguments.map, arguments.plot)
+    compile_kernels()
+    result = plan(
+        space,
+        arguments.start,
+        arguments.goal,
+        algorithm=arguments.algorithm,
+        goal_radius=arguments.goal_radius,
+        time_limit=arguments.time_limit,
+        seed=arguments.seed,
+        simplify=arguments.simplify,
+        optimize_for=arguments.optimize_for,
+    )
+    print(_json(result) if arguments.json else _summary(space, result))
+    if arguments.plot:
+        _draw(arguments, occupancy, space, result)
+        if not arguments.json:
+            print(f'picture     {arguments.plot}')
+    return 0 if result.status is PlannerStatus.SOLVED else NO_PATH
+
+
+def _json(result: PlanResult) -> str:
+    """Return the result as one JSON object; without a path its length is null."""
+    return json.dumps(
+        {
+            'status': result.status.name,
+            'message': result.message,
+            'algorithm': result.planner,
+            'seed': result.seed,
+            'iterations': result.iterations,
+            'elapsed': result.elapsed,
+            'length': result.length if math.isfinite(result.length) else None,
+            'path': result.path.tolist(),
+        }
+    )
+
+
+def _summary(space: GridSpace, result: PlanResult) -> str:
+    """Return the result for a person."""
+    lines = [
+        f'{result.status.name}: {result.message}',
+        f'search      {result.planner}, {result.iterations:,} transitions, '
+        f'{len(result.samples):,} samples, {result.elapsed * 1e3:.1f} ms, seed {result.seed}',
+    ]
+    if len(result.path):
+        clearance = space.path_clearance(result.path)
+        lines.append(
+            f'path        {result.length:.2f} m, {len(result.path)} points, '
+            f'{clearance:.2f} m from the nearest obstacle'
+        )
+        lines.append('            ' + ' '.join(_points(result.path.tolist())))
+    return '\n'.join(lines)
+
+
+def _points(path: list[list[float]], most: int = 8) -> list[str]:
+    """Return the points of a path in words, those in the middle left out when there are many."""
+    words = [f'({x:.2f}, {y:.2f})' for x, y in path]
+    if len(words) <= most:
+        return words
+    half = most // 2
+    return [*words[:half], '...', *words[-half:]]
+
+
+def _draw(
+    arguments: argparse.Namespace, occupancy: OccupancyMap, space: GridSpace, result: PlanResult
+) -> None:
+    """Write the picture."""
+    from hnr_planner import drawing
+
+    title = f'{result.planner}: {result.status.name}, {result.iterations:,} transitions'
+    if len(result.path):
+        title += f', {result.length:.1f} m'
+    shown = drawing.Plan(
+        title,
+        result.path,
+        result.samples,
+        result.parents,
+        tuple(arguments.start),
+        tuple(arguments.goal),
+    )
+    figure = drawing.figure_of_plans(occupancy, [shown], blocked=space.blocked)
+    drawing.save(figure, arguments.plot)

@@ -1,0 +1,208 @@
+"""
+A process that asks the planning node for paths and receives what it publishes.
+
+``python -m hnr_planner.demo.client --start X Y --goal X Y`` asks a node that runs, by each
+algorithm, and says how it went; with ``--out DIR`` it also writes down what it received.
+"""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Callable
+from pathlib import Path
+import sys
+import time
+from typing import Any
+
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
+from geometry_msgs.msg import PoseStamped
+from hnr_planner.demo.answer import Answer
+from hnr_planner.ros.outcome_messages import read_outcome
+from hnr_planner.ros.publications import latched
+from nav_msgs.msg import Path as PathMessage
+from nav_msgs.srv import GetPlan
+import numpy as np
+from numpy.typing import NDArray
+import rclpy
+from rclpy.node import Node
+from sensor_msgs.msg import PointCloud2
+
+ALGORITHMS = ('hit_and_run', 'rrt')
+PLANNER = 'hnr_planner'
+ARRIVE_WITHIN = 10.0
+"""Time for a message that has been published, or a service that is up, to be seen [s]."""
+POINT_FIELDS = {5: '<i4', 6: '<u4', 7: '<f4', 8: '<f8'}  # of sensor_msgs/PointField
+
+
+class LateError(Exception):
+    """Something did not come in time; the message says what."""
+
+
+class Client(Node):
+    """Asks for paths, and keeps what is published by the stamp of each request."""
+
+    def __init__(self) -> None:
+        super().__init__('hnr_planner_client')
+        self._received: dict[str, dict[tuple[int, int], Any]] = {}
+        self._listen('outcome', DiagnosticArray)
+        self._listen('path', PathMessage)
+        self._listen('samples', PointCloud2)
+        self._ready = False
+        self.create_subscription(DiagnosticArray, '/diagnostics', self._note_health, 10)
+
+    def _listen(self, topic: str, kind: type) -> None:
+        """Keep the messages of a topic of the planner by their stamps."""
+        received = self._received[topic] = {}
+
+        def keep(message: Any) -> None:
+            received[_stamp(message)] = message
+
+        self.create_subscription(kind, f'{PLANNER}/{topic}', keep, latched(100))
+
+    def wait_until_ready(self, within: float) -> None:
+        """Wait until the planner says that it has a map and can plan, or raise LateError."""
+        self._wait(lambda: self._ready, within, 'a planner that is up and has a map')
+
+    def ask(
+        self,
+        algorithm: str,
+        start: tuple[float, float],
+        goal: tuple[float, float],
+        frame: str,
+        within: float,
+    ) -> Answer:
+        """
+        Ask for a path by an algorithm and return all that came of it.
+
+        Parameters
+        ----------
+        algorithm : str
+            'hit_and_run' or 'rrt'.
+        start, goal : (x, y)
+            Ends of the path [m].
+        frame : str
+            The frame they are in.
+        within : float
+            How long to wait for the answer [s].
+
+        Raises
+        ------
+        LateError
+            When the answer or a message about it does not come in time.
+
+        """
+        name = f'{PLANNER}/plan_{algorithm}'
+        service = self.create_client(GetPlan, name)
+        self._wait(service.service_is_ready, ARRIVE_WITHIN, f'the service {name}')
+        request = GetPlan.Request(start=_pose(start, frame), goal=_pose(goal, frame))
+        asked = time.monotonic()
+        future = service.call_async(request)
+        self._wait(future.done, within, f'an answer of {name}')
+        round_trip = time.monotonic() - asked
+        response = future.result().plan
+        stamp = _stamp(response)
+        self._wait_for('outcome', stamp)
+        outcome, values = read_outcome(self._received['outcome'][stamp])
+        path, samples, parents = np.empty((0, 2)), np.empty((0, 2)), np.empty(0, dtype=int)
+        if outcome.name == 'SOLVED':
+            self._wait_for('path', stamp)
+            self._wait_for('samples', stamp)
+            path = _points(self._received['path'][stamp])
+            samples, parents = _samples(self._received['samples'][stamp])
+        return Answer(outcome.name, values, _points(response), path, samples, parents, round_trip)
+
+    def _wait_for(self, topic: str, stamp: tuple[int, int]) -> None:
+        """Wait for the message of a request on a topic."""
+        received = self._received[topic]
+        self._wait(lambda: stamp in received, ARRIVE_WITHIN, f'a message on {PLANNER}/{topic}')
+
+    def _wait(self, condition: Callable[[], bool], within: float, what: str) -> None:
+        """Spin until the condition holds, or raise LateError."""
+        deadline = time.monotonic() + within
+        while not condition():
+            if time.monotonic() > deadline:
+                raise LateError(f'{what} did not come within {within:g} s')
+            rclpy.spin_once(self, timeout_sec=0.1)
+
+    def _note_health(self, message: DiagnosticArray) -> None:
+        """Note when the planner is ready."""
+        for status in message.status:
+            if status.name.startswith(f'/{PLANNER}:') and status.level == DiagnosticStatus.OK:
+                self._ready = True
+
+
+def main(argv: list[str] | None = None) -> int:
+    """Ask for a path by each algorithm; return 0 when all were answered."""
+    parser = argparse.ArgumentParser(prog='python -m hnr_planner.demo.client', description=__doc__)
+    for name in ('start', 'goal'):
+        parser.add_argument(f'--{name}', type=float, nargs=2, required=True, metavar=('X', 'Y'))
+    parser.add_argument('--frame', default='map', help='frame of both; default map')
+    parser.add_argument('--out', type=Path, metavar='DIR', help='write what arrives there')
+    parser.add_argument('--ready-within', type=float, default=10.0, metavar='S')
+    parser.add_argument('--answer-within', type=float, default=30.0, metavar='S')
+    arguments = parser.parse_args(argv)
+    try:
+        rclpy.init(args=[])
+        client = Client()
+        client.wait_until_ready(arguments.ready_within)
+        for algorithm in ALGORITHMS:
+            answer = client.ask(
+                algorithm,
+                arguments.start,
+                arguments.goal,
+                arguments.frame,
+                arguments.answer_within,
+            )
+            if arguments.out:
+                answer.write(arguments.out, algorithm)
+            print(
+                f'{algorithm}: {answer.outcome} in {answer.round_trip * 1e3:.1f} ms, '
+                f'{len(answer.path)} poses and {len(answer.samples)} samples received'
+            )
+    except LateError as error:
+        print(error, file=sys.stderr)
+        return 1
+    except (KeyboardInterrupt, rclpy.executors.ExternalShutdownException):
+        return 130
+    finally:
+        rclpy.try_shutdown()
+    return 0
+
+
+def _pose(point: tuple[float, float], frame: str) -> PoseStamped:
+    """Return a pose at a point; fields of messages take floats of Python only."""
+    pose = PoseStamped()
+    pose.header.frame_id = frame
+    pose.pose.position.x, pose.pose.position.y = (float(value) for value in point)
+    pose.pose.orientation.w = 1.0
+    return pose
+
+
+def _stamp(message: Any) -> tuple[int, int]:
+    """Return the stamp of a message, which is that of its request."""
+    return message.header.stamp.sec, message.header.stamp.nanosec
+
+
+def _points(path: PathMessage) -> NDArray[np.float64]:
+    """Return the positions (m, 2) of a path."""
+    positions = (pose.pose.position for pose in path.poses)
+    return np.array([(p.x, p.y) for p in positions]).reshape(-1, 2)
+
+
+def _samples(cloud: PointCloud2) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    """Return the samples (k, 2) and the row of each one's parent (k,), in their order."""
+    layout = np.dtype(
+        {
+            'names': [field.name for field in cloud.fields],
+            'formats': [POINT_FIELDS[field.datatype] for field in cloud.fields],
+            'offsets': [field.offset for field in cloud.fields],
+            'itemsize': cloud.point_step,
+        }
+    )
+    rows = np.sort(np.frombuffer(cloud.data, layout), order='index')
+    samples = np.stack((rows['x'], rows['y']), axis=1).astype(float)
+    return samples, rows['parent'].astype(int)
+
+
+if __name__ == '__main__':
+    sys.exit(main())

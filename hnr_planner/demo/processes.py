@@ -1,0 +1,233 @@
+"""
+The demo's processes: started with their output shown line by line, and never left behind.
+
+Each runs in a session of its own, so that Ctrl-C in a terminal reaches the demo alone, which then
+ends the others in order: SIGTERM first, SIGKILL for those that do not listen.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+import os
+from pathlib import Path
+import random
+import signal
+import socket
+import subprocess
+import sys
+import threading
+import time
+from types import FrameType
+
+import hnr_planner
+from hnr_planner.core import HnrError
+
+END_WITHIN = 5.0
+"""Time that a process has to end after SIGTERM [s]."""
+SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+
+
+class ProcessError(HnrError):
+    """A process died, or did not do its work in time."""
+
+
+class Screen:
+    """Prints lines with the time since the beginning, one at a time, whoever says them."""
+
+    def __init__(self) -> None:
+        self._began = time.monotonic()
+        self._lock = threading.Lock()
+        self._last = self._began
+
+    @property
+    def silent_for(self) -> float:
+        """Time since the last line [s]."""
+        return time.monotonic() - self._last
+
+    def say(self, who: str, line: str) -> None:
+        """Print a line."""
+        with self._lock:
+            self._last = time.monotonic()
+            print(f'{self._last - self._began:6.1f} s  {who:<8} {line}', flush=True)
+
+
+class Interruptions:
+    """Turns Ctrl-C, SIGTERM and SIGHUP into KeyboardInterrupt, but not where they are held."""
+
+    def __init__(self) -> None:
+        self._held = False
+        self._pending = False
+
+    @contextmanager
+    def caught(self) -> Iterator[None]:
+        """Handle the signals here, and as before afterwards."""
+        before = {number: signal.signal(number, self._handle) for number in SIGNALS}
+        try:
+            yield
+        finally:
+            for number, handler in before.items():
+                signal.signal(number, handler)
+
+    @contextmanager
+    def held(self) -> Iterator[None]:
+        """Let the block end before an interruption is raised."""
+        self._held = True
+        try:
+            yield
+        finally:
+            self._held = False
+            if self._pending:
+                self._pending = False
+                raise KeyboardInterrupt
+
+    def _handle(self, _number: int, _frame: FrameType | None) -> None:
+        if self._held:
+            self._pending = True
+        else:
+            raise KeyboardInterrupt
+
+
+class Processes:
+    """
+    Python modules at work in processes of their own, all in one ROS domain.
+
+    Parameters
+    ----------
+    screen : Screen
+        Where their output goes, under the name of each.
+    interruptions : Interruptions
+        Held while a process is started or ended, so that none slips away.
+    domain : int
+        ROS_DOMAIN_ID of all of them.
+    logs : Path
+        Folder for the log files of ROS.
+
+    """
+
+    def __init__(
+        self, screen: Screen, interruptions: Interruptions, domain: int, logs: Path
+    ) -> None:
+        self._screen = screen
+        self._interruptions = interruptions
+        self._environment = _environment(domain, logs)
+        self._running: dict[str, subprocess.Popen[str]] = {}
+        self._readers: list[threading.Thread] = []
+
+    def start(self, name: str, module: str, arguments: Sequence[str]) -> None:
+        """Start a module of Python under a name."""
+        with self._interruptions.held():
+            process = subprocess.Popen(
+                [sys.executable, '-m', module, *arguments],
+                env=self._environment,
+                stdin=subprocess.DEVNULL,
+                stdout=subprocess.PIPE,
+                stderr=subprocess.STDOUT,
+                text=True,
+                errors='replace',
+                start_new_session=True,
+            )
+            self._running[name] = process
+            reader = threading.Thread(target=self._show, args=(name, process), daemon=True)
+            reader.start()
+            self._readers.append(reader)
+
+    def wait_for(self, name: str, within: float, waiting: str) -> None:
+        """
+        Wait until a process has ended well, and say now and then what for.
+
+        Raises
+        ------
+        ProcessError
+            When it ends with another code than 0 or not in time, or another process dies.
+
+        """
+        deadline = time.monotonic() + within
+        while (code := self._running[name].poll()) is None:
+            self.check_alive()
+            if time.monotonic() > deadline:
+                raise ProcessError(f'the {name} was not done after {within:.0f} s')
+            if self._screen.silent_for > 5.0:
+                self._screen.say('demo', waiting)
+            time.sleep(0.05)
+        del self._running[name]
+        if code != 0:
+            raise ProcessError(f'the {name} ended with exit code {code}; see its lines above')
+
+    def check_alive(self) -> None:
+        """Raise ProcessError when a process has ended with an error or on its own."""
+        for name, process in self._running.items():
+            code = process.poll()
+            if code is not None and name != 'client':
+                raise ProcessError(f'the {name} died with exit code {code}; see its lines above')
+
+    def stop(self) -> list[str]:
+        """End all that still run; return what did not go as it should, in words."""
+        with self._interruptions.held():
+            complaints = []
+            for process in self._running.values():
+                _send(process, signal.SIGTERM)
+            deadline = time.monotonic() + END_WITHIN
+            for name, process in self._running.items():
+                try:
+                    code = process.wait(max(deadline - time.monotonic(), 0.0))
+                except subprocess.TimeoutExpired:
+                    complaints.append(f'the {name} did not end within {END_WITHIN:.0f} s: killed')
+                else:
+                    # What was interrupted before it was ready ends by the signal itself.
+                    if code not in (0, -signal.SIGTERM):
+                        complaints.append(f'the {name} ended with exit code {code}')
+                _send(process, signal.SIGKILL)  # the whole session, should it have children
+                process.wait()
+            for reader in self._readers:
+                reader.join(timeout=1.0)
+            self._running.clear()
+            return complaints
+
+    def _show(self, name: str, process: subprocess.Popen[str]) -> None:
+        assert process.stdout is not None
+        with process.stdout:
+            for line in process.stdout:
+                self._screen.say(name, line.rstrip())
+
+
+def free_domain() -> int:
+    """Return a ROS domain that nobody on this machine uses: its discovery port is free."""
+    domains = list(range(1, 102))  # those whose ports are safe on every system
+    random.shuffle(domains)
+    for domain in domains:
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+            try:
+                probe.bind(('', 7410 + 250 * domain))
+            except OSError:
+                continue
+            return domain
+    raise ProcessError('every ROS domain from 1 to 101 is in use on this machine')
+
+
+def _environment(domain: int, logs: Path) -> dict[str, str]:
+    """Return the environment of the processes: this package, this machine only, plain lines."""
+    environment = {
+        name: value
+        for name, value in os.environ.items()
+        if name not in ('ROS_LOCALHOST_ONLY', 'ROS_STATIC_PEERS')
+    }
+    package = str(Path(hnr_planner.__file__).resolve().parents[1])
+    paths = [package, *filter(None, [environment.get('PYTHONPATH')])]
+    return environment | {
+        'PYTHONPATH': os.pathsep.join(paths),
+        'PYTHONUNBUFFERED': '1',
+        'ROS_DOMAIN_ID': str(domain),
+        'ROS_AUTOMATIC_DISCOVERY_RANGE': 'LOCALHOST',
+        'ROS_LOG_DIR': str(logs),
+        'RCUTILS_COLORIZED_OUTPUT': '0',
+        'RCUTILS_CONSOLE_OUTPUT_FORMAT': '{message}',
+    }
+
+
+def _send(process: subprocess.Popen[str], number: signal.Signals) -> None:
+    """Send a signal to the session of a process, if any of it is left."""
+    try:
+        os.killpg(process.pid, number)
+    except ProcessLookupError:
+        pass

@@ -1,0 +1,1 @@
+"""Tests of the command line, the pictures, the demo and the README."""

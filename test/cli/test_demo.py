@@ -1,0 +1,168 @@
+"""The demo as a whole: real nodes in real processes, and none of them left."""
+
+from collections.abc import Iterator
+import os
+from pathlib import Path
+import re
+import signal
+import subprocess
+import sys
+from test.cli.conftest import ROOT
+from test.cli.pictures import check_picture
+import time
+import uuid
+
+from hnr_planner import drawing
+import pytest
+
+pytest.importorskip('rclpy', reason='the demo needs ROS 2')
+
+READY_WITHIN = 240.0
+MAPS = Path(os.environ.get('HNR_MAPS', '/nonexistent'))
+REAL_MAPS = sorted(file for file in MAPS.glob('*') if file.suffix in ('.yaml', '.map'))
+
+
+class Demo:
+    """One run of the demo, with a mark in the environment by which all its processes are known."""
+
+    def __init__(self, folder: Path, *arguments: object) -> None:
+        """Start it in a folder."""
+        self.picture = folder / 'picture.png'
+        self._mark = f'HNR_TEST_MARK={uuid.uuid4().hex}'
+        name, value = self._mark.split('=')
+        command = [sys.executable, '-m', 'hnr_planner', 'demo', '--out', self.picture, *arguments]
+        self._process = subprocess.Popen(
+            [str(word) for word in command],
+            cwd=folder,
+            env=os.environ | {name: value, 'PYTHONPATH': str(ROOT)},
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+        )
+        self.lines: list[str] = []
+
+    def read_until(self, pattern: str) -> str:
+        """Read lines until one matches, and return it."""
+        assert self._process.stdout is not None
+        for line in self._process.stdout:
+            self.lines.append(line)
+            if re.search(pattern, line):
+                return line
+        raise AssertionError(f'no line matched {pattern!r}:\n{"".join(self.lines)}')
+
+    def send(self, number: signal.Signals) -> None:
+        """Send a signal to the demo itself."""
+        self._process.send_signal(number)
+
+    def finish(self) -> tuple[int, str]:
+        """Wait for its end; return exit code and all that it said."""
+        rest, _ = self._process.communicate(timeout=READY_WITHIN)
+        return self._process.returncode, ''.join(self.lines) + rest
+
+    def members(self, command: str = '') -> list[int]:
+        """Return the processes of this demo, those whose command line has a word in it."""
+        found = []
+        for folder in Path('/proc').glob('[0-9]*'):
+            try:
+                marked = self._mark in (folder / 'environ').read_text(errors='replace').split('\0')
+                if marked and command in (folder / 'cmdline').read_text(errors='replace'):
+                    found.append(int(folder.name))
+            except OSError:  # ended meanwhile
+                continue
+        return found
+
+    def end(self) -> None:
+        """Leave nothing behind, whatever happened."""
+        for pid in self.members():
+            os.kill(pid, signal.SIGKILL)
+        self._process.wait()
+        if self._process.stdout is not None:
+            self._process.stdout.close()
+
+
+@pytest.fixture
+def start(tmp_path: Path) -> Iterator[object]:
+    """Return a function that starts the demo."""
+    demos: list[Demo] = []
+
+    def start_demo(*arguments: object) -> Demo:
+        demos.append(Demo(tmp_path, *arguments))
+        return demos[-1]
+
+    yield start_demo
+    for demo in demos:
+        demo.end()
+
+
+def check_success(demo: Demo) -> None:
+    """Check that a demo did all that it should."""
+    code, said = demo.finish()
+    assert code == 0, said
+    for algorithm in ('hit_and_run', 'rrt'):
+        (row,) = re.findall(rf'^{algorithm} .*$', said, re.MULTILINE)
+        assert re.search(r'SOLVED +[\d,]+ +[\d.]+ ms +[\d.]+ m +([\d.]+|inf) m +free, ', row), row
+    assert 'Traceback' not in said
+    check_picture(demo.picture, drawing.PATH, drawing.START, drawing.GOAL)
+    assert demo.members() == []
+
+
+def test_default_demo(start) -> None:
+    demo = start()
+    demo.read_until('robot radius 0.22 m')
+    check_success(demo)
+
+
+@pytest.mark.parametrize('file', REAL_MAPS, ids=lambda file: file.name)
+def test_demo_on_a_real_map(start, file: Path) -> None:
+    check_success(start('--map', file))
+
+
+def test_demo_on_a_turned_map_whose_name_is_hard_to_quote(
+    start, rooms_file: Path, tmp_path: Path
+) -> None:
+    file = tmp_path / "it's: a #map.yaml"
+    image = next(path for path in rooms_file.parent.iterdir() if path.suffix != '.yaml')
+    file.write_text(re.sub('image: .*', f'image: {image}', rooms_file.read_text()))
+    check_success(start('--map', file))
+
+
+@pytest.mark.parametrize('moment', ['robot radius', 'starting the map source', 'preparing'])
+@pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])
+def test_interrupted_demo_leaves_nothing(start, moment: str, number: signal.Signals) -> None:
+    demo = start()
+    demo.read_until(moment)
+    demo.send(number)
+    code, said = demo.finish()
+    assert code == 130, said
+    assert 'interrupted' in said and 'Traceback' not in said
+    assert demo.members() == []
+
+
+@pytest.mark.parametrize('node', ['map_node', 'planner_node'])
+def test_death_of_a_node_is_reported(start, node: str) -> None:
+    demo = start('--keep')
+    demo.read_until('ros2 service call')
+    (pid,) = demo.members(f'hnr_planner.ros.{node}')
+    os.kill(pid, signal.SIGKILL)
+    code, said = demo.finish()
+    assert code == 1
+    assert re.search(r'^failed: the (map|planner) died with exit code -9', said, re.MULTILINE)
+    assert demo.members() == []
+
+
+def test_kept_nodes_answer_until_the_end(start) -> None:
+    demo = start('--keep')
+    domain = demo.read_until('export ROS_DOMAIN_ID').split('ROS_DOMAIN_ID=')[1].split()[0]
+    call = demo.read_until('demo.client --start').split()
+    place = {'ROS_DOMAIN_ID': domain, 'ROS_AUTOMATIC_DISCOVERY_RANGE': 'LOCALHOST'}
+    asked = subprocess.run(
+        call, cwd=ROOT, env=os.environ | place, capture_output=True, text=True, timeout=60
+    )
+    assert asked.returncode == 0, asked.stderr
+    assert asked.stdout.count('SOLVED') == 2
+    time.sleep(0.5)
+    assert len(demo.members()) == 3
+    demo.send(signal.SIGINT)
+    code, said = demo.finish()
+    assert code == 0, said
+    assert demo.members() == []

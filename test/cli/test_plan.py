@@ -1,0 +1,203 @@
+"""The command ``plan``."""
+
+from collections.abc import Callable
+import json
+import math
+from pathlib import Path
+import subprocess
+import sys
+from test.brute_force import path_collisions
+from test.cli.conftest import at, OFFICE, Ran, ROOT, run_process
+from test.cli.pictures import check_picture
+
+from hnr_planner.cli.plan import ALGORITHM_NAMES
+from hnr_planner.cli.sample import WALK_NAMES
+from hnr_planner.core import ALGORITHMS, WALKS
+from hnr_planner.maps import load_map, OccupancyMap, save_map
+import numpy as np
+import pytest
+
+Run = Callable[..., Ran]
+KEYS = ['status', 'message', 'algorithm', 'seed', 'iterations', 'elapsed', 'length', 'path']
+
+
+def ends(rooms: OccupancyMap) -> list[object]:
+    """Return a start in one room and a goal in the other."""
+    return ['--start', *at(rooms, 5, 5), '--goal', *at(rooms, 8, 75)]
+
+
+def test_help_names_what_the_core_has() -> None:
+    assert set(ALGORITHM_NAMES) == set(ALGORITHMS)
+    assert set(WALK_NAMES) == set(WALKS)
+
+
+@pytest.mark.parametrize('command', [[], ['plan'], ['sample'], ['demo']])
+def test_help_imports_nothing_heavy(command: list[str]) -> None:
+    program = (
+        'import sys; from hnr_planner.cli.main import main; '
+        f'assert main({[*command, "--help"]}) == 0; '
+        'heavy = {"numpy", "numba", "matplotlib", "rclpy"} & sys.modules.keys(); '
+        'assert not heavy, heavy'
+    )
+    done = subprocess.run(
+        [sys.executable, '-c', program], cwd=ROOT, capture_output=True, text=True, timeout=60
+    )
+    assert done.returncode == 0, done.stderr
+    assert 'example' in done.stdout
+
+
+@pytest.mark.parametrize('algorithm', ALGORITHMS)
+@pytest.mark.parametrize('radius', [0.0, 0.25])
+def test_json_holds_a_free_path(
+    run: Run, rooms: OccupancyMap, rooms_file: Path, algorithm: str, radius: float
+) -> None:
+    ran = run(
+        'plan', rooms_file, *ends(rooms), '--algorithm', algorithm, '--json', '--seed', 3,
+        '--robot-radius', radius, '--time-limit', 20,
+    )  # fmt: skip
+    assert (ran.code, ran.err) == (0, '')
+    result = json.loads(ran.out)
+    assert list(result) == KEYS
+    assert (result['status'], result['seed']) == ('SOLVED', 3)
+    assert result['algorithm'] in ALGORITHMS and result['algorithm'] != 'auto'
+    assert algorithm in ('auto', result['algorithm'])
+    path = np.array(result['path'])
+    assert path[0].tolist() == list(at(rooms, 5, 5))
+    assert path[-1].tolist() == list(at(rooms, 8, 75))
+    occupied = rooms.data >= 65
+    collisions = path_collisions(
+        path, occupied, rooms.resolution, rooms.origin, robot_radius=radius
+    )
+    assert collisions == []
+    assert result['length'] == pytest.approx(sum(map(math.dist, path[:-1], path[1:])))
+
+
+def test_same_seed_same_path_in_another_process() -> None:
+    def result() -> dict:
+        ran = run_process(
+            'plan', OFFICE, '--start', 3, 22, '--goal', 34, 5, '--robot-radius', 0.22,
+            '--algorithm', 'hit_and_run', '--seed', 7, '--time-limit', 30, '--json',
+        )  # fmt: skip
+        assert ran.code == 0, ran.err
+        return {key: value for key, value in json.loads(ran.out).items() if key != 'elapsed'}
+
+    first = result()
+    assert first['iterations'] > 10
+    assert first == result()
+    office = load_map(OFFICE)
+    blocked = (office.data < 0) | (office.data >= 65)
+    assert path_collisions(first['path'], blocked, office.resolution, office.origin) == []
+
+
+def test_summary_says_what_a_person_wants_to_know(
+    run: Run, rooms: OccupancyMap, rooms_file: Path
+) -> None:
+    command = ['plan', rooms_file, *ends(rooms), '--seed', 5]
+    told, result = run(*command), json.loads(run(*command, '--json').out)
+    assert told.code == 0
+    for words in ('SOLVED', 'seed 5', f'{result["length"]:.2f} m', result['algorithm']):
+        assert words in told.out
+    assert len(told.out.splitlines()) <= 5
+
+
+@pytest.mark.parametrize(
+    ('start', 'goal', 'status'),
+    [
+        ((5, 5), (35, 75), 'UNREACHABLE'),
+        ((-20, 5), (8, 75), 'INVALID_START'),
+        ((0, 5), (8, 75), 'INVALID_START'),
+        ((5, 5), (5, 40), 'INVALID_GOAL'),
+    ],
+)
+def test_without_a_path_the_code_is_1_and_the_message_says_why(
+    run: Run,
+    rooms: OccupancyMap,
+    rooms_file: Path,
+    start: tuple[int, int],
+    goal: tuple[int, int],
+    status: str,
+) -> None:
+    command = ['plan', rooms_file, '--start', *at(rooms, *start), '--goal', *at(rooms, *goal)]
+    ran = run(*command, '--json')
+    result = json.loads(ran.out)
+    assert (ran.code, ran.err, result['status']) == (1, '', status)
+    assert (result['path'], result['length']) == ([], None)
+    named = at(rooms, *(start if status == 'INVALID_START' else goal))
+    assert f'{named[0]:g}' in result['message']
+    told = run(*command)
+    assert told.code == 1
+    assert told.out.startswith(f'{status}: {result["message"]}')
+
+
+def test_limit_of_time_is_a_status(run: Run, rooms: OccupancyMap, rooms_file: Path) -> None:
+    ran = run('plan', rooms_file, *ends(rooms), '--time-limit', '1e-9', '--json')
+    assert (ran.code, json.loads(ran.out)['status']) == (1, 'TIMEOUT')
+
+
+def test_start_equal_to_goal_is_solved(run: Run, rooms: OccupancyMap, rooms_file: Path) -> None:
+    here = at(rooms, 5, 5)
+    ran = run('plan', rooms_file, '--start', *here, '--goal', *here, '--json')
+    result = json.loads(ran.out)
+    assert (ran.code, result['length']) == (0, 0.0)
+    assert result['path'] == [list(here), list(here)]
+
+
+def test_goal_radius_ends_near_the_goal(run: Run, rooms: OccupancyMap, rooms_file: Path) -> None:
+    command = ['plan', rooms_file, *ends(rooms), '--goal-radius', 0.5, '--seed', 1, '--json']
+    command += ['--algorithm', 'rrt']
+    end = json.loads(run(*command, '--time-limit', 20).out)['path'][-1]
+    assert 0.0 < math.dist(end, at(rooms, 8, 75)) <= 0.5
+
+
+def test_no_simplify_leaves_the_detours(run: Run, rooms: OccupancyMap, rooms_file: Path) -> None:
+    command = ['plan', rooms_file, *ends(rooms), '--algorithm', 'hit_and_run', '--seed', 1]
+    command += ['--json', '--time-limit', 20]
+    simple, raw = (json.loads(run(*command, *more).out) for more in ([], ['--no-simplify']))
+    assert raw['iterations'] == simple['iterations']
+    assert len(raw['path']) == raw['iterations'] + 2
+    assert raw['length'] > simple['length']
+
+
+def test_optimize_for_never_ends_with_a_longer_path(
+    run: Run, rooms: OccupancyMap, rooms_file: Path
+) -> None:
+    command = ['plan', rooms_file, *ends(rooms), '--algorithm', 'rrt', '--seed', 1, '--json']
+    plain, better = (
+        json.loads(run(*command, *more).out) for more in ([], ['--optimize-for', 0.3])
+    )
+    assert better['length'] <= plain['length']
+    assert better['iterations'] > plain['iterations']
+    assert 0.3 <= better['elapsed'] < 1.2  # the time limit is 1 s
+
+
+def test_unknown_cells_block_unless_told_otherwise(run: Run, tmp_path: Path) -> None:
+    data = np.zeros((20, 20), dtype=np.int8)
+    data[:, 10] = -1
+    save_map(OccupancyMap(data, 0.1), tmp_path / 'map.yaml')
+    command = ['plan', tmp_path / 'map.yaml', '--start', 0.5, 0.5, '--goal', 1.5, 1.5, '--json']
+    assert json.loads(run(*command).out)['status'] == 'UNREACHABLE'
+    assert json.loads(run(*command, '--unknown', 'free').out)['status'] == 'SOLVED'
+
+
+def test_negative_and_tiny_coordinates_are_numbers(run: Run, tmp_path: Path) -> None:
+    save_map(OccupancyMap(np.zeros((9, 9), np.int8), 0.1, (-0.5, -0.5, 0.0)), tmp_path / 'm.yaml')
+    ran = run('plan', tmp_path / 'm.yaml', '--start', '-1e-05', '-.2', '--goal', -0.25, '1e-3')
+    assert ran.code == 0, ran.err
+
+
+def test_moving_ai_map(run: Run, tmp_path: Path) -> None:
+    file = tmp_path / 'small.map'
+    file.write_text('type octile\nheight 3\nwidth 4\nmap\n....\n.@@.\n....\n')
+    ran = run('plan', file, '--start', 0.5, 0.5, '--goal', 3.5, 2.5, '--json')
+    assert (ran.code, json.loads(ran.out)['status']) == (0, 'SOLVED')
+
+
+@pytest.mark.parametrize('goal', [(8, 75), (35, 75)], ids=['with path', 'without path'])
+def test_plot_is_a_picture(
+    run: Run, rooms: OccupancyMap, rooms_file: Path, tmp_path: Path, goal: tuple[int, int]
+) -> None:
+    file = tmp_path / 'plan.png'
+    command = ['plan', rooms_file, '--start', *at(rooms, 5, 5), '--goal', *at(rooms, *goal)]
+    ran = run(*command, '--plot', file)
+    assert str(file) in ran.out
+    check_picture(file)

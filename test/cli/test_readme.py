@@ -1,0 +1,87 @@
+"""The README: its commands run, its Python runs, its links lead somewhere."""
+
+from collections.abc import Iterator
+from pathlib import Path
+import re
+import subprocess
+import sys
+from test.cli.conftest import ROOT
+from test.cli.pictures import check_picture
+
+from PIL import Image
+import pytest
+
+README = (ROOT / 'README.md').read_text()
+
+
+def blocks(language: str) -> list[str]:
+    """Return the fenced blocks in a language."""
+    return re.findall(rf'^```{language}\n(.*?)^```', README, re.MULTILINE | re.DOTALL)
+
+
+@pytest.fixture
+def clone(tmp_path: Path) -> Iterator[Path]:
+    """Return a folder with the maps in their place, where files may be written."""
+    (tmp_path / 'config').symlink_to(ROOT / 'config')
+    yield tmp_path
+
+
+def run(command: list[str], folder: Path) -> str:
+    """Run a command in a folder and return what it printed."""
+    done = subprocess.run(
+        command,
+        cwd=folder,
+        env={'PYTHONPATH': str(ROOT), 'PATH': f'{Path(sys.executable).parent}:/usr/bin:/bin'},
+        capture_output=True,
+        text=True,
+        timeout=300,
+    )
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+@pytest.mark.parametrize('block', blocks('bash'), ids=['plan', 'sample'])
+def test_commands_run_and_write_their_files(block: str, clone: Path) -> None:
+    assert 'SOLVED' in (out := run(['bash', '-ec', block], clone)) or 'points' in out
+    for name in re.findall(r'--plot (\S+)', block):
+        check_picture(clone / name)
+    for name in re.findall(r'--csv (\S+)', block):
+        assert len((clone / name).read_text().splitlines()) == 5001
+
+
+@pytest.mark.parametrize('block', blocks('python'), ids=['plan', 'sample'])
+def test_python_runs(block: str, clone: Path) -> None:
+    out = run([sys.executable, '-c', block], clone)
+    assert out.startswith('SOLVED path of') or out == '(4, 1000, 2)\n'
+
+
+def test_links_lead_somewhere() -> None:
+    links = re.findall(r'\]\(([^)]+)\)', README)
+    assert len(links) > 10
+    headings = {
+        '#' + re.sub(r'[^\w ]', '', title.lower()).replace(' ', '-')
+        for title in re.findall(r'^#+ (.*)$', README, re.MULTILINE)
+    }
+    broken = [link for link in links if not (link in headings or (ROOT / link).exists())]
+    assert broken == []
+
+
+def test_make_targets_exist() -> None:
+    makefile = (ROOT / 'Makefile').read_text()
+    targets = set(re.findall(r'make ([a-z]+)', README))
+    assert {'install', 'demo', 'test', 'check'} <= targets
+    for target in targets:
+        assert re.search(rf'^{target}:', makefile, re.MULTILINE), target
+
+
+def test_names_of_ros_are_those_of_the_node() -> None:
+    node = pytest.importorskip('hnr_planner.ros.node', reason='needs ROS 2', exc_type=ImportError)
+    services = set(re.findall(r'`~/(plan\w*)`', README))
+    assert services == set(node.SERVICES)
+
+
+def test_picture_is_small_enough_to_load_at_once() -> None:
+    file = ROOT / 'docs' / 'demo.png'
+    assert file.stat().st_size < 300_000
+    with Image.open(file) as image:
+        assert image.width >= 1400

@@ -1,0 +1,124 @@
+"""The command ``sample``."""
+
+from argparse import Namespace
+from collections.abc import Callable
+import csv
+from pathlib import Path
+import subprocess
+import sys
+from test.brute_force import path_collisions
+from test.cli.conftest import at, Ran, ROOT, run_process
+from test.cli.pictures import check_picture
+
+from hnr_planner.cli.arguments import open_map
+from hnr_planner.cli.sample import uniform_start
+from hnr_planner.core import WALKS
+from hnr_planner.maps import OccupancyMap
+import numpy as np
+import pytest
+from scipy.stats import chi2
+
+Run = Callable[..., Ran]
+
+
+def read(text: str) -> np.ndarray:
+    """Return the points (k, 2) of a CSV text whose first line is x,y."""
+    header, *rows = csv.reader(text.splitlines())
+    assert header == ['x', 'y']
+    return np.array(rows, dtype=float)
+
+
+@pytest.mark.parametrize('walk', WALKS)
+def test_every_row_is_a_free_point(
+    run: Run, rooms: OccupancyMap, rooms_file: Path, tmp_path: Path, walk: str
+) -> None:
+    file = tmp_path / 'points.csv'
+    ran = run(
+        'sample', rooms_file, '--n', 500, '--walk', walk, '--seed', 4, '--csv', file,
+        '--robot-radius', 0.2,
+    )  # fmt: skip
+    assert (ran.code, ran.err) == (0, '')
+    assert str(file) in ran.out and 'seed 4' in ran.out
+    points = read(file.read_text())
+    assert points.shape == (500, 2)
+    assert len(np.unique(points, axis=0)) > 490
+    for point in points:
+        assert not path_collisions(
+            [point], rooms.data >= 65, rooms.resolution, rooms.origin, robot_radius=0.2
+        )
+
+
+def test_points_lie_in_the_largest_part(run: Run, rooms: OccupancyMap, rooms_file: Path) -> None:
+    x, y, yaw = rooms.origin
+    points = read(run('sample', rooms_file, '--n', 2000, '--seed', 1).out) - (x, y)
+    cols = (points[:, 0] * np.cos(yaw) + points[:, 1] * np.sin(yaw)) / rooms.resolution
+    rows = (points[:, 1] * np.cos(yaw) - points[:, 0] * np.sin(yaw)) / rooms.resolution
+    assert not ((cols > 70) & (rows > 30)).any()  # the closed cupboard
+    assert (cols < 39).any() and (cols > 41).any()  # both rooms
+
+
+def test_start_chooses_the_part(run: Run, rooms: OccupancyMap, rooms_file: Path) -> None:
+    command = ['sample', rooms_file, '--n', 50, '--start', *at(rooms, 35, 75)]
+    corner = np.array(at(rooms, 35, 75))
+    assert (np.abs(read(run(*command).out) - corner) < 1.0).all()
+
+
+def test_same_seed_same_points(rooms_file: Path, run: Run) -> None:
+    command = ['sample', rooms_file, '--n', 100, '--seed', 9]
+    here, there = run(*command), run_process(*command)
+    assert here.code == there.code == 0
+    assert here.out == there.out
+    assert here.out != run('sample', rooms_file, '--n', 100, '--seed', 10).out
+
+
+def test_without_a_seed_the_points_differ_but_can_be_had_again(
+    run: Run, rooms_file: Path, tmp_path: Path
+) -> None:
+    file = tmp_path / 'points.csv'
+    command = ['sample', rooms_file, '--n', 20, '--csv', file]
+    told, first = run(*command).out, file.read_text()
+    run(*command)
+    assert file.read_text() != first
+    seed = told.split('seed ')[1].split(')')[0]
+    run(*command, '--seed', seed)
+    assert file.read_text() == first
+
+
+def test_plot_is_a_picture(run: Run, rooms_file: Path, tmp_path: Path) -> None:
+    file = tmp_path / 'points.png'
+    ran = run('sample', rooms_file, '--n', 3000, '--plot', file)
+    assert ran.code == 0 and str(file) in ran.out
+    check_picture(file)
+
+
+def test_a_reader_that_leaves_is_no_error(rooms_file: Path) -> None:
+    program = f'{sys.executable} -m hnr_planner sample {rooms_file} --n 200000 | head -n 2'
+    done = subprocess.run(
+        ['bash', '-o', 'pipefail', '-c', program],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        timeout=120,
+    )
+    assert (done.returncode, done.stderr) == (0, '')
+    assert len(done.stdout.splitlines()) == 2
+
+
+def test_walk_starts_anywhere_with_the_same_chance(rooms_file: Path) -> None:
+    # 5,000 starts over 8 x 4 bins of the free space; a false alarm in 1 of 10^4.
+    _, space = open_map(Namespace(map=rooms_file, robot_radius=0.0, unknown='blocked'))
+    starts = np.array([uniform_start('map', space, seed) for seed in range(5000)])
+    x, y, yaw = space.origin
+    away = starts - (x, y)
+    cols = (away[:, 0] * np.cos(yaw) + away[:, 1] * np.sin(yaw)) / space.resolution
+    rows = (away[:, 1] * np.cos(yaw) - away[:, 0] * np.sin(yaw)) / space.resolution
+    found = np.histogram2d(rows, cols, bins=(4, 8), range=((0, 40), (0, 80)))[0]
+    cells = space.largest_component().reshape(4, 10, 8, 10).sum(axis=(1, 3))
+    expected = cells / cells.sum() * len(starts)
+    assert found[expected == 0].sum() == 0
+    used = expected > 0
+    statistic = ((found[used] - expected[used]) ** 2 / expected[used]).sum()
+    assert statistic < chi2.isf(1e-4, used.sum() - 1)
+    # And within its cell: the middle alone would be 0.5.
+    inside = np.concatenate([rows % 1, cols % 1])
+    assert np.histogram(inside, bins=10, range=(0, 1))[0].min() > 800
