@@ -21,6 +21,9 @@ GRIDS = {
     'speckle': maps.speckle(20, 30, 0.35, seed=5),
 }
 
+LONE_CELL = np.zeros((9, 9), dtype=bool)
+LONE_CELL[4, 4] = True
+
 # Resolution, origin: powers of two, where every multiple of a cell is exact in floats.
 EXACT_FRAMES = {
     'cells': (1.0, (0.0, 0.0, 0.0)),
@@ -335,6 +338,18 @@ def test_clearance_of_a_path_is_the_least_along_it(grid, frame):
 
 def _dense(a, b):
     return np.linspace(a, b, 2000)
+
+
+def test_clearance_of_a_segment_beside_one_square():
+    """Every way in which a segment can lie to a square: past corners, along edges, across."""
+    space = GridSpace.from_blocked(LONE_CELL)
+    rng = np.random.default_rng(13)
+    for _ in range(400):
+        a, b = rng.uniform(0, 9, (2, 2))
+        dense = _dense(a, b)
+        expected = brute_clearance(LONE_CELL, dense).min()
+        found = space.path_clearance([a, b])
+        assert expected - np.linalg.norm(dense[1] - dense[0]) / 2 <= found <= expected + 1e-12
 
 
 def test_clearance_of_a_path_of_one_point_is_the_clearance_of_the_point():
