@@ -5,7 +5,7 @@ import operator
 import secrets
 from typing import Any
 
-from hnr_planner.core.errors import RequestError
+from hnr_planner.core.errors import HnrError, RequestError
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -28,7 +28,7 @@ def check_point(name: str, point: ArrayLike, dim: int) -> Floats:
     array = check_points(name, point, dim)
     if array.ndim != 1:
         raise RequestError(f'{name} must have shape ({dim},), got {array.shape}')
-    if not np.isfinite(array).all():
+    if not all(map(math.isfinite, array.tolist())):
         raise RequestError(f'{name} must be finite, got {array.tolist()}')
     return array
 
@@ -41,12 +41,17 @@ def check_direction(name: str, direction: ArrayLike, dim: int) -> Floats:
     return array
 
 
+def check_real(name: str, value: Any, error: type[HnrError] = RequestError) -> float:
+    """Return ``value`` as a float, whichever, or raise ``error``."""
+    try:
+        return float(value)
+    except (TypeError, ValueError):
+        raise error(f'{name} must be a number, got {value!r}') from None
+
+
 def check_number(name: str, value: Any, lower: float, upper: float = math.inf) -> float:
     """Return ``value`` as a float in [lower, upper], or raise RequestError."""
-    try:
-        number = float(value)
-    except (TypeError, ValueError):
-        raise RequestError(f'{name} must be a number, got {value!r}') from None
+    number = check_real(name, value)
     if not lower <= number <= upper:
         raise RequestError(f'{name} must be in {lower:g}..{upper:g}, got {number!r}')
     return number

@@ -9,7 +9,7 @@ from test.laws import maps
 
 from hnr_planner.core import GridSpace, kernels
 from hnr_planner.core.kernels import interpreted
-from hnr_planner.core.planning import frontier, nearest, rrt, simplify
+from hnr_planner.core.planning import frontier, nearest, rrt, shortcuts
 from hnr_planner.core.planning import hit_and_run_connect as connect
 from hnr_planner.core.planning.hit_and_run import _walk
 from hnr_planner.core.planning.search import Problem
@@ -181,5 +181,6 @@ def test_hit_and_run_connect():
 def test_simplify():
     chain = np.tile(PROBLEM.start, (60, 1))
     _walk(PROBLEM._replace(goal_radius=1e-9), np.random.default_rng(1), chain, 1, 60)
-    assert_same(*both(simplify._shortcut, GRID.data, chain, np.random.Generator, 100))
-    assert_same(*both(simplify._last_seen, GRID.data, chain, 0, 59, 100))
+    kept = np.zeros(60, dtype=np.int64)
+    assert_same(*both(shortcuts.skip, GRID.data, chain, kept, 1, 60, 100))
+    assert_same(*both(shortcuts.tighten, GRID.data, chain, 1e-8, np.random.Generator, 1000))

@@ -105,17 +105,23 @@ class HitAndRunConnectSearch:
     @property
     def samples(self) -> Floats:
         """The vertices (k, dim) of both trees."""
-        return self._trees.vertices[: self._trees.sizes.sum()]
+        return self._trees.vertices[: self._n_vertices]
 
     @property
     def parents(self) -> NDArray[np.int64]:
         """Index (k,) of the vertex that each was reached from; -1 for the two roots."""
-        return self._trees.parents[: self._trees.sizes.sum()]
+        return self._trees.parents[: self._n_vertices]
+
+    @property
+    def _n_vertices(self) -> int:
+        in_first, in_second = self._trees.sizes.tolist()
+        return in_first + in_second
 
     @property
     def path(self) -> Floats:
         """Return the branch of each tree that leads to where they met."""
-        ahead, back = (branch(self.samples, self.parents, end) for end in self._ends)
+        samples, parents = self.samples, self.parents
+        ahead, back = (branch(samples, parents, end) for end in self._ends)
         return np.concatenate([ahead, back[::-1]]) if len(back) else to_goal(self.problem, ahead)
 
     @property
@@ -127,7 +133,7 @@ class HitAndRunConnectSearch:
         """Take at most ``n_iterations`` further steps."""
         if self.solved:
             return
-        rows = len(self.samples) + n_iterations
+        rows = self._n_vertices + n_iterations
         trees = self._trees
         self._trees = trees._replace(
             vertices=with_room(trees.vertices, rows),

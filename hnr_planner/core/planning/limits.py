@@ -1,9 +1,8 @@
 """What ends a search that does not end by itself: the clock, a count, or a person."""
 
-from dataclasses import dataclass
 import math
 import time
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
 from hnr_planner.core.planning.result import PlannerStatus
 from hnr_planner.core.planning.search import Search
@@ -20,8 +19,7 @@ class Event(Protocol):
         """Say whether it was set."""
 
 
-@dataclass(frozen=True)
-class Limits:
+class Limits(NamedTuple):
     """
     Limits on the work for one request.
 

@@ -5,22 +5,22 @@ The planners search and count; ``plan`` alone checks the request, owns the clock
 cancellation, shortens the path and says in words how it ended.
 """
 
-from dataclasses import dataclass, replace
+import itertools
 import math
 import time
-from typing import Any
+from typing import Any, NamedTuple
 
-from hnr_planner.core.checks import check_count, check_number, check_point, check_seed, Floats
-from hnr_planner.core.planning.algorithms import make_planner
+from hnr_planner.core.checks import check_count, check_number, Floats
 from hnr_planner.core.planning.limits import Event, Limits
+from hnr_planner.core.planning.request import check_request, refusal, Request
 from hnr_planner.core.planning.result import (
     FirstSolution,
     path_length,
     PlannerStatus,
     PlanResult,
 )
-from hnr_planner.core.planning.search import Planner, Problem, Search
-from hnr_planner.core.planning.simplify import shorten
+from hnr_planner.core.planning.search import Planner, Search
+from hnr_planner.core.planning.simplify import compile_shorten, shorten
 from hnr_planner.core.spaces.space import Space
 import numpy as np
 from numpy.typing import ArrayLike
@@ -85,144 +85,103 @@ def plan(
         When an argument is malformed; the message names the value and the rule.
 
     """
-    request = _Request(
-        space=space,
-        start=check_point('start', start, space.dim),
-        goal=check_point('goal', goal, space.dim),
-        goal_radius=check_number('goal_radius', goal_radius, 0.0),
-        planner=make_planner(algorithm, settings),
-        simplify=bool(simplify),
-        seed=check_seed(seed),
-    )
+    request = check_request(space, start, goal, goal_radius, algorithm, settings, simplify, seed)
     seconds = check_number('time_limit', time_limit, 0.0)
     improve_seconds = check_number('optimize_for', optimize_for, 0.0)
     improve_searches = check_count('optimize_iterations', optimize_iterations, 0)
-    count = (
+    transitions = (
         math.inf if max_iterations is None else check_count('max_iterations', max_iterations, 1)
     )
-    _compile(space, request.planner)
+    _compile(request)
 
     began = time.perf_counter()
-    limits = Limits(began + seconds, count, cancel)
-    refused = _refusal(request)
+    refused = refusal(request)
     if refused is not None:
-        return replace(refused, elapsed=time.perf_counter() - began)
-    seeds = np.random.SeedSequence(request.seed)
-    result = _attempt(request, seeds.spawn(1)[0], limits, began)
-    if result.path.size and (improve_seconds or improve_searches):
+        return _without_search(request, *refused, began)
+    limits = Limits(began + seconds, transitions, cancel)
+    best = _attempt(request, 0, limits, began)
+    first, iterations = best.first, best.search.iterations
+    if first is not None and (improve_seconds or improve_searches):
         until = time.perf_counter() + (improve_seconds or math.inf)
-        limits = replace(limits, deadline=min(limits.deadline, until))
-        result = _improve(request, result, seeds, limits, began, improve_searches or math.inf)
-    return replace(result, elapsed=time.perf_counter() - began)
-
-
-@dataclass(frozen=True)
-class _Request:
-    """A request whose numbers are clean."""
-
-    space: Space
-    start: Floats
-    goal: Floats
-    goal_radius: float
-    planner: Planner
-    simplify: bool
-    seed: int
-
-    def problem(self) -> Problem:
-        """State the problem in the kernel frame."""
-        lower, upper = self.space.kernel_bounds
-        return Problem(
-            space=self.space.data,
-            lower=lower,
-            upper=upper,
-            start=self.space.to_kernel(self.start),
-            goal=self.space.to_kernel(self.goal),
-            goal_radius=self.goal_radius / self.space.scale,
-            margin=self.space.margin,
-            clearance=self.space.typical_clearance,
-        )
-
-    def failure(self, status: PlannerStatus, message: str) -> PlanResult:
-        """Answer without a path and without a search."""
-        return PlanResult(
-            status=status,
-            message=message,
-            planner=self.planner.name,
-            path=np.empty((0, self.space.dim)),
-            length=math.inf,
-            samples=np.empty((0, self.space.dim)),
-            parents=np.empty(0, dtype=np.int64),
-            iterations=0,
-            counts={},
-            elapsed=0.0,
-            seed=self.seed,
-            cut_by_time=False,
-            first_solution=None,
-        )
-
-
-def _refusal(request: _Request) -> PlanResult | None:
-    """Answer at once where no search can help: an end that is not free, or no way between them."""
-    space, start, goal = request.space, request.start, request.goal
-    if not space.contains(start):
-        message = f'start {_words(start)} is {space.why_not_free(start)}'
-        return request.failure(PlannerStatus.INVALID_START, message)
-    goal_is_free = space.contains(goal)
-    if not goal_is_free and request.goal_radius == 0.0:
-        message = f'goal {_words(goal)} is {space.why_not_free(goal)}'
-        return request.failure(PlannerStatus.INVALID_GOAL, message)
-    if space.reachable(start, goal, request.goal_radius) is not False:
-        return None
-    around = f' or within {request.goal_radius:g} m of it' if request.goal_radius else ''
-    message = f'no path exists from start {_words(start)} to goal {_words(goal)}{around}'
-    status = PlannerStatus.UNREACHABLE if goal_is_free else PlannerStatus.INVALID_GOAL
-    return request.failure(status, message)
-
-
-def _attempt(
-    request: _Request, seed: np.random.SeedSequence, limits: Limits, began: float
-) -> PlanResult:
-    """Search once and shorten what was found."""
-    search_rng, simplify_rng = (np.random.default_rng(child) for child in seed.spawn(2))
-    search = request.planner.start(request.problem(), search_rng, request.space.scale)
-    status = limits.run(search)
-    result = _unsolved(request, search, status, limits, began)
-    if status is not PlannerStatus.SOLVED:
-        return result
-    path = _path_found(request, search)
-    first = FirstSolution(time.perf_counter() - began, path_length(path))
-    if request.simplify:
-        path = shorten(request.space, path, simplify_rng, limits)
-    length = path_length(path)
-    return replace(
-        result,
-        message=f'path of {length:.6g} m with {len(path)} vertices '
-        f'after {search.iterations} transitions',
-        path=path,
-        length=length,
+        limits = limits._replace(deadline=min(limits.deadline, until))
+        best, iterations = _improve(request, best, improve_searches or math.inf, limits, began)
+    samples = space.from_kernel(best.search.samples)
+    samples[0] = request.start
+    return PlanResult(
+        status=best.status,
+        message=_message(best, iterations, began),
+        planner=request.planner.name,
+        path=best.path,
+        length=best.length,
+        samples=samples,
+        parents=best.search.parents.copy(),
+        iterations=iterations,
+        counts=best.search.counts,
+        elapsed=time.perf_counter() - began,
+        seed=request.seed,
         cut_by_time=limits.stop() is PlannerStatus.TIMEOUT,
         first_solution=first,
     )
 
 
-def _unsolved(
-    request: _Request, search: Search, status: PlannerStatus, limits: Limits, began: float
+def _without_search(
+    request: Request, status: PlannerStatus, message: str, began: float
 ) -> PlanResult:
-    """Say what a search did, the path aside."""
-    seconds = time.perf_counter() - began
-    return replace(
-        request.failure(
-            status, f'{status.value} ({search.iterations} transitions, {seconds:.3g} s)'
-        ),
-        samples=request.space.from_kernel(search.samples),
-        parents=search.parents.copy(),
-        iterations=search.iterations,
-        counts=search.counts,
-        cut_by_time=status is PlannerStatus.TIMEOUT,
+    """Answer a request that needs no search to fail."""
+    return PlanResult(
+        status=status,
+        message=message,
+        planner=request.planner.name,
+        path=np.empty((0, request.space.dim)),
+        length=math.inf,
+        samples=np.empty((0, request.space.dim)),
+        parents=np.empty(0, dtype=np.int64),
+        iterations=0,
+        counts={},
+        elapsed=time.perf_counter() - began,
+        seed=request.seed,
+        cut_by_time=False,
+        first_solution=None,
     )
 
 
-def _path_found(request: _Request, search: Search) -> Floats:
+#: What generators are for.
+SEARCH, SHORTEN = 0, 1
+
+
+class _Attempt(NamedTuple):
+    """One search, and the path that came of it in the caller's frame."""
+
+    status: PlannerStatus
+    search: Search
+    path: Floats
+    length: float
+    first: FirstSolution | None
+
+
+def _attempt(request: Request, number: int, limits: Limits, began: float) -> _Attempt:
+    """Search once and shorten what was found."""
+    space = request.space
+    for salt in itertools.count():
+        search = request.planner.start(
+            request.problem, request.generator(number, SEARCH, salt), space.scale
+        )
+        status = limits.run(search)
+        if status is not PlannerStatus.SOLVED:
+            return _Attempt(status, search, np.empty((0, space.dim)), math.inf, None)
+        path = _path_found(request, search)
+        # A path so close to a corner that the caller's coordinates round it into the obstacle
+        # is none: search again.
+        if space.first_blocked_segment(path) is None:
+            break
+    first = FirstSolution(time.perf_counter() - began, path_length(path))
+    if not request.simplify or len(path) == 2:
+        return _Attempt(status, search, path, first.length, first)
+    path = shorten(space, path, request.generator(number, SHORTEN), limits)
+    return _Attempt(status, search, path, path_length(path), first)
+
+
+def _path_found(request: Request, search: Search) -> Floats:
     """Path (m, dim) of a solved search, caller's frame; its ends are the caller's own numbers."""
     path = request.space.from_kernel(search.path)
     path[0] = request.start
@@ -232,50 +191,41 @@ def _path_found(request: _Request, search: Search) -> Floats:
 
 
 def _improve(
-    request: _Request,
-    best: PlanResult,
-    seeds: np.random.SeedSequence,
-    limits: Limits,
-    began: float,
-    searches: float,
-) -> PlanResult:
-    """Search again from fresh seeds, and keep the shortest path."""
-    iterations, first = best.iterations, best.first_solution
-    while searches > 0 and limits.stop() is None:
-        again = _attempt(request, seeds.spawn(1)[0], limits, began)
-        iterations += again.iterations
-        searches -= 1
+    request: Request, best: _Attempt, searches: float, limits: Limits, began: float
+) -> tuple[_Attempt, int]:
+    """Search again from fresh seeds: the attempt with the shortest path, and all transitions."""
+    iterations, number = best.search.iterations, 1
+    while number <= searches and limits.stop() is None:
+        again = _attempt(request, number, limits, began)
+        iterations += again.search.iterations
+        number += 1
         if again.length < best.length:
             best = again
-    cut = limits.stop() is PlannerStatus.TIMEOUT
-    return replace(
-        best,
-        iterations=iterations,
-        first_solution=first,
-        cut_by_time=best.cut_by_time or cut,
-    )
+    return best, iterations
 
 
-_compiled: set[tuple[type, type]] = set()
+def _message(attempt: _Attempt, iterations: int, began: float) -> str:
+    """Say in words how a search ended."""
+    if attempt.status is PlannerStatus.SOLVED:
+        found = f'path of {attempt.length:.6g} m with {len(attempt.path)} vertices'
+        return f'{found} after {iterations} transitions'
+    seconds = time.perf_counter() - began
+    return f'{attempt.status.value} ({iterations} transitions, {seconds:.3g} s)'
 
 
-def _compile(space: Space, planner: Planner) -> None:
+_compiled: set[tuple[type, type[Planner]]] = set()
+
+
+def _compile(request: Request) -> None:
     """Compile, once for each kind of space and planner, before any clock runs."""
-    kinds = (type(space.data), type(planner))
+    space, kinds = request.space, (type(request.space.data), type(request.planner))
     if kinds in _compiled:
         return
-    lower, upper = space.kernel_bounds
-    problem = Problem(
-        space.data, lower, upper, lower, upper, 0.0, space.margin, space.typical_clearance
-    )
     rng = np.random.default_rng(0)
-    search = planner.start(problem, rng, space.scale)
+    search = request.planner.start(request.problem, rng, space.scale)
     search.advance(0)
-    space.contains(np.zeros(space.dim))
-    corners = space.from_kernel(np.stack([lower, upper]))
-    shorten(space, np.concatenate([corners, corners]), rng, Limits(math.inf))
+    refusal(request)
+    ends = np.stack([request.start, request.goal])
+    compile_shorten(space, ends)
+    space.first_blocked_segment(ends)
     _compiled.add(kinds)
-
-
-def _words(point: Floats) -> str:
-    return '(' + ', '.join(f'{x:g}' for x in point) + ')'

@@ -2,9 +2,11 @@
 
 from dataclasses import dataclass
 from enum import Enum
+import math
 from typing import NamedTuple
 
 from hnr_planner.core.checks import Floats
+from hnr_planner.core.kernels import kernel
 import numpy as np
 from numpy.typing import NDArray
 
@@ -82,6 +84,13 @@ class PlanResult:
         return (self.path,) if len(self.path) else ()
 
 
-def path_length(path: Floats) -> float:
+@kernel
+def path_length(path):
     """Length of a path (m, dim)."""
-    return float(np.linalg.norm(np.diff(path, axis=0), axis=1).sum())
+    total = 0.0
+    for k in range(1, len(path)):
+        squared = 0.0
+        for i in range(path.shape[1]):
+            squared += (path[k, i] - path[k - 1, i]) ** 2
+        total += math.sqrt(squared)
+    return total

@@ -14,7 +14,7 @@ from hnr_planner.core.errors import RequestError
 from hnr_planner.core.kernels import kernel
 from hnr_planner.core.planning.nearest import BoxTree, empty_box_tree, grown, insert, nearest
 from hnr_planner.core.planning.search import branch, Problem, reaches_goal, to_goal, with_room
-from hnr_planner.core.spaces.primitives import contains, leave
+from hnr_planner.core.spaces.primitives import contains, contains_around, leave
 import numpy as np
 from numpy.typing import NDArray
 
@@ -158,8 +158,13 @@ def _extend(problem, max_step, vertex, proposal, end):
     # The proposal where the vertex sees it, or else the farthest visible point.
     s = 1.0 if reach > 1.0 else reach - problem.margin / length
     s = min(s, max_step / length)
-    if s * length <= problem.margin:
-        return False
-    for i in range(len(u)):
-        end[i] = proposal[i] if s == 1.0 else vertex[i] + s * u[i]
-    return contains(problem.space, end)
+    # A wall met at a grazing angle is nearer than the margin along the ray: go back a little more.
+    back = problem.margin / length
+    while s * length > problem.margin:
+        for i in range(len(u)):
+            end[i] = proposal[i] if s == 1.0 else vertex[i] + s * u[i]
+        if contains_around(problem.space, end, problem.margin / 8.0):
+            return True
+        s -= back
+        back *= 10.0
+    return False

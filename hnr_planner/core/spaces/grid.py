@@ -1,15 +1,17 @@
 """An occupancy grid as a space: what is free, what is connected, how far the walls are."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Literal
 
-from hnr_planner.core.checks import check_point, check_points, Floats
+from hnr_planner.core.checks import check_point, check_points, check_real, Floats
 from hnr_planner.core.errors import RequestError, SpaceError
 from hnr_planner.core.spaces.clearance import path_clearance, point_clearance
 from hnr_planner.core.spaces.grid_fields import components, free_distance, inflate
 from hnr_planner.core.spaces.grid_frame import GridFrame
 from hnr_planner.core.spaces.grid_traversal import GridData
+from hnr_planner.core.spaces.primitives import components as components_of
 from hnr_planner.core.spaces.space import Space
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -44,7 +46,6 @@ class GridSpace(Space):
     robot_radius: float
     data: GridData
     _wall_distance: NDArray[np.uint8]
-    _labels: NDArray[np.int32]
 
     dim = 2
 
@@ -87,6 +88,10 @@ class GridSpace(Space):
         values = _check_cells(data)
         if not np.issubdtype(values.dtype, np.integer):
             raise SpaceError(f'data must be whole numbers, got an array of {values.dtype}')
+        if not isinstance(occupied_threshold, (int, np.integer)):
+            raise SpaceError(
+                f'occupied_threshold must be a whole number, got {occupied_threshold!r}'
+            )
         if not 1 <= occupied_threshold <= 100:
             raise SpaceError(f'occupied_threshold must be in 1..100, got {occupied_threshold!r}')
         if unknown not in ('blocked', 'free'):
@@ -111,17 +116,23 @@ class GridSpace(Space):
 
     @classmethod
     def _build(
-        cls, occupied: Bools, closed: Bools, resolution: float, origin: ArrayLike, radius: float
+        cls,
+        occupied: Bools,
+        closed: Bools,
+        resolution: float,
+        origin: Iterable[float],
+        radius: float,
     ) -> 'GridSpace':
         frame = GridFrame.checked(resolution, origin, occupied.shape)
-        radius = _check_radius(radius)
-        blocked = inflate(occupied, radius / frame.resolution) | closed
+        radius = check_real('robot_radius', radius, SpaceError)
+        if not 0.0 <= radius < np.inf:
+            raise SpaceError(f'robot_radius must be at least 0 and finite, got {radius!r}')
+        distance = free_distance(inflate(occupied, radius / frame.resolution) | closed)
         return cls(
             frame=frame,
             robot_radius=radius,
-            data=GridData(free_distance(blocked)),
+            data=GridData(distance, components(distance > 0)),
             _wall_distance=free_distance(occupied, closed_rim=False),
-            _labels=components(~blocked),
         )
 
     # -- where it lies ---------------------------------------------------------------------------
@@ -157,7 +168,7 @@ class GridSpace(Space):
         """Lower and upper corner (2,) of the grid in the kernel frame."""
         return self.frame.corners[0], self.frame.corners[2]
 
-    @property
+    @cached_property
     def margin(self) -> float:
         """Distance from a chord's end at which one stops, never below what coordinates resolve."""
         return max(super().margin, 8.0 * self.frame.rounding)
@@ -165,7 +176,7 @@ class GridSpace(Space):
     @cached_property
     def typical_clearance(self) -> float:
         """Mean distance in king's moves from a free cell to a blocked one, over a sample."""
-        stride = max(1, int(np.sqrt(self._labels.size / TYPICAL_CELLS)))
+        stride = max(1, int(np.sqrt(self.data.labels.size / TYPICAL_CELLS)))
         distance = self.data.free_distance[::stride, ::stride]
         free = distance[distance > 0]
         return float(free.mean()) if free.size else 1.0
@@ -201,14 +212,15 @@ class GridSpace(Space):
 
     def why_not_free(self, point: ArrayLike) -> str:
         """Say in words why ``point`` (2,) [m] is not free."""
-        column, row = np.floor(self.frame.to_cells(check_point('point', point, 2))).astype(int) - 1
+        x, y = self.frame.to_cells(check_point('point', point, 2)) - self.frame.RIM
         rows, columns = self.shape
-        if not (0 <= row < rows and 0 <= column < columns):
+        if not (0 <= x < columns and 0 <= y < rows):
             lower, upper = self.bounds
             return (
                 f'outside the map, which spans x {lower[0]:g}..{upper[0]:g}, '
                 f'y {lower[1]:g}..{upper[1]:g} m'
             )
+        row, column = int(y), int(x)
         cell = f'cell [{row}, {column}]'
         if self.occupied[row, column]:
             return f'inside an obstacle: {cell} is occupied'
@@ -234,22 +246,19 @@ class GridSpace(Space):
         Free cells that share an edge are connected; those that share only a corner are not, since
         the corner touches the two obstacles beside it.
         """
-        label = self._label(check_point('a', a, 2))
-        return label != 0 and label == self._label(check_point('b', b, 2))
+        part = self._component(check_point('a', a, 2))
+        return part != 0 and part == self._component(check_point('b', b, 2))
 
-    def reachable(self, start: Floats, goal: Floats, radius: float) -> bool:
-        """Say whether a path leads from ``start`` to ``goal``, or within ``radius`` [m] of it."""
-        if self.connected(start, goal):
-            return True
-        return radius > 0.0 and self.nearest_reachable(start, goal, radius) is not None
+    def region_reachable(self, start: ArrayLike, goal: ArrayLike, radius: float) -> bool:
+        """Say whether a path leads from ``start`` to within ``radius`` [m] of ``goal``."""
+        return self.nearest_reachable(start, goal, radius) is not None
 
     def largest_component(self) -> Bools:
         """Return the cells (rows, cols) of the largest connected part of free space."""
-        sizes = np.bincount(self._labels.ravel())
+        labels = self.data.labels[1:-1, 1:-1]
+        sizes = np.bincount(labels.ravel())
         sizes[0] = 0
-        if not sizes.any():
-            return np.zeros(self.shape, dtype=bool)
-        return self._labels == sizes.argmax()
+        return (labels == sizes.argmax()) & (labels > 0)
 
     def nearest_reachable(self, start: ArrayLike, goal: ArrayLike, radius: float) -> Floats | None:
         """
@@ -257,29 +266,26 @@ class GridSpace(Space):
 
         Free space is open, so a nearest point on the rim of a cell is taken ``margin`` inside.
         """
-        label = self._label(check_point('start', start, 2))
+        part = self._component(check_point('start', start, 2))
         target = self.frame.to_cells(check_point('goal', goal, 2))
-        cells = self._cells_around(label, target, radius / self.scale)
+        cells = self._cells_around(part, target, radius / self.scale)
         nearest = np.clip(target, cells + self.margin, cells + 1 - self.margin)
         offsets = np.hypot(*(nearest - target).T)
-        if label == 0 or not (offsets <= radius / self.scale).any():
+        if part == 0 or not (offsets <= radius / self.scale).any():
             return None
         return self.frame.to_map(nearest[offsets.argmin()])
 
-    def _label(self, point: Floats) -> int:
-        """Component of a point: 0 where it is not free."""
-        if not self.contains(point):
-            return 0
-        column, row = np.floor(self.frame.to_cells(point)).astype(int) - self.frame.RIM
-        return int(self._labels[row, column])
+    def _component(self, point: Floats) -> int:
+        """Part of free space that holds a point (2,) [m]: 0 where it is not free."""
+        return int(components_of(self.data, self.frame.to_cells(point)[np.newaxis])[0])
 
-    def _cells_around(self, label: int, target: Floats, reach: float) -> Floats:
-        """Lower corners (k, 2), kernel frame, of a component's cells in a window of ``reach``."""
-        rim = self.frame.RIM
-        left, bottom = np.maximum(np.floor(target - reach) - rim, 0).astype(int)
-        right, top = np.maximum(np.floor(target + reach) + 1 - rim, 0).astype(int)
-        rows, columns = np.nonzero(self._labels[bottom:top, left:right] == label)
-        return np.stack([columns + left + rim, rows + bottom + rim], axis=1).astype(float)
+    def _cells_around(self, part: int, target: Floats, reach: float) -> Floats:
+        """Lower corners (k, 2), kernel frame, of a part's cells in a window of ``reach``."""
+        labels = self.data.labels
+        ends = np.clip(np.stack([target - reach, target + reach + 1]), 0, labels.shape[::-1])
+        (left, bottom), (right, top) = ends.astype(int)
+        rows, columns = np.nonzero(labels[bottom:top, left:right] == part)
+        return np.stack([columns + left, rows + bottom], axis=1).astype(float)
 
     # -- how far the walls are -------------------------------------------------------------------
 
@@ -302,9 +308,3 @@ def _check_cells(cells: ArrayLike) -> NDArray[Any]:
     if array.ndim != 2 or array.size == 0:
         raise SpaceError(f'a grid needs rows and columns, got an array of shape {array.shape}')
     return array
-
-
-def _check_radius(radius: float) -> float:
-    if not 0.0 <= radius < np.inf:
-        raise SpaceError(f'robot_radius must be at least 0 and finite, got {radius!r}')
-    return float(radius)

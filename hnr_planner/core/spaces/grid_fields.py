@@ -50,7 +50,7 @@ def free_distance(blocked: Bools, *, closed_rim: bool = True) -> NDArray[np.uint
     return np.minimum(distance, FARTHEST).astype(np.uint8)
 
 
-def components(free: Bools) -> NDArray[np.int32]:
+def components(free: NDArray[np.bool_]) -> NDArray[np.int32]:
     """Label (rows, cols) the free cells connected over shared edges: 1, 2, …; 0 is not free."""
-    _, labels = cv2.connectedComponents(free.astype(np.uint8), connectivity=4, ltype=cv2.CV_32S)
+    _, labels = cv2.connectedComponents(free.view(np.uint8), connectivity=4, ltype=cv2.CV_32S)
     return np.asarray(labels, dtype=np.int32)

@@ -1,14 +1,14 @@
 """Where a grid lies in the map: between metres of the map frame and cells of the kernel frame."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
 import math
 from typing import ClassVar
 
-from hnr_planner.core.checks import Floats
+from hnr_planner.core.checks import check_real, Floats
 from hnr_planner.core.errors import SpaceError
 import numpy as np
-from numpy.typing import ArrayLike
 
 #: Coordinates must resolve this part of a cell, or free and blocked cannot be told apart.
 FINEST = 1e-6
@@ -40,14 +40,20 @@ class GridFrame:
     RIM: ClassVar[int] = 1
 
     @classmethod
-    def checked(cls, resolution: float, origin: ArrayLike, shape: tuple[int, ...]) -> 'GridFrame':
+    def checked(
+        cls, resolution: float, origin: Iterable[float], shape: tuple[int, ...]
+    ) -> 'GridFrame':
         """Build a frame from a caller's numbers, or raise SpaceError naming the wrong one."""
+        resolution = check_real('resolution', resolution, SpaceError)
         if not 0.0 < resolution < math.inf:
             raise SpaceError(f'resolution must be above 0 and finite, got {resolution!r}')
-        pose = np.asarray(origin, dtype=np.float64)
-        if pose.shape != (3,) or not np.isfinite(pose).all():
+        try:
+            x, y, yaw = map(float, origin)
+        except (TypeError, ValueError):
+            x = y = yaw = math.nan
+        if not all(map(math.isfinite, (x, y, yaw))):
             raise SpaceError(f'origin must be three finite numbers (x, y, yaw), got {origin!r}')
-        frame = cls(float(resolution), tuple(pose.tolist()), (int(shape[0]), int(shape[1])))
+        frame = cls(resolution, (x, y, yaw), (int(shape[0]), int(shape[1])))
         if not frame.rounding <= FINEST:
             raise SpaceError(
                 f'origin {frame.origin} is too far away: coordinates there are rounded to '
@@ -69,13 +75,17 @@ class GridFrame:
         unit = np.array([(0, 0), (1, 0), (1, 1), (0, 1)])
         return unit * np.array([columns, rows], dtype=np.float64) + self.RIM
 
+    @cached_property
+    def _corner(self) -> Floats:
+        return np.array(self.origin[:2])
+
     def to_cells(self, points: Floats) -> Floats:
         """Bring points (..., 2) [m] of the map frame into the kernel frame."""
-        return self.turn_to_grid(points - self.origin[:2]) / self.resolution + self.RIM
+        return self.turn_to_grid(points - self._corner) / self.resolution + self.RIM
 
     def to_map(self, cells: Floats) -> Floats:
         """Bring points (..., 2) of the kernel frame into the map frame [m]."""
-        return _turned((cells - self.RIM) * self.resolution, self.origin[2]) + self.origin[:2]
+        return _turned((cells - self.RIM) * self.resolution, self.origin[2]) + self._corner
 
     def turn_to_grid(self, directions: Floats) -> Floats:
         """Turn directions (..., 2) of the map frame into the grid's frame."""
@@ -84,6 +94,11 @@ class GridFrame:
 
 def _turned(points: Floats, angle: float) -> Floats:
     """Turn points (..., 2) by ``angle`` [rad]; one point or many, the same to the last bit."""
+    if angle == 0.0:
+        return points
     cos, sin = math.cos(angle), math.sin(angle)
+    turned = np.empty_like(points)
     x, y = points[..., 0], points[..., 1]
-    return np.stack([x * cos - y * sin, x * sin + y * cos], axis=-1)
+    turned[..., 0] = x * cos - y * sin
+    turned[..., 1] = x * sin + y * cos
+    return turned

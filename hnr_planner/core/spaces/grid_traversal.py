@@ -25,9 +25,20 @@ SKIP_FROM = 4
 
 
 class GridData(NamedTuple):
-    """A compiled grid: ``free_distance`` (rows, columns) uint8, its rim 0."""
+    """
+    A compiled grid.
+
+    Attributes
+    ----------
+    free_distance : (rows, columns) uint8
+        Distance in king's moves to the nearest blocked cell; 0 on the rim.
+    labels : (rows, columns) int32
+        Connected part that each free cell belongs to; 0 for blocked cells.
+
+    """
 
     free_distance: NDArray[np.uint8]
+    labels: NDArray[np.int32]
 
 
 @kernel
@@ -50,6 +61,13 @@ def _is_free(free_distance, x, y):
     if on_row_line and free_distance[row - 1, column] == 0:
         return False
     return not (on_column_line and on_row_line and free_distance[row - 1, column - 1] == 0)
+
+
+@kernel
+def _component(grid, x):
+    if not _is_free(grid.free_distance, x[0], x[1]):
+        return 0
+    return int(grid.labels[math.floor(x[1]), math.floor(x[0])])
 
 
 @kernel
@@ -89,7 +107,7 @@ def _first_cell(at, u):
 
 @kernel
 def _crossing(x, u, cell, step):
-    """Parameter at which the ray leaves ``cell`` along one axis: the one rounding of a hit."""
+    """Parameter at which the ray leaves ``cell`` along one axis; inf when it never does."""
     if step == 0:
         return math.inf
     return (cell + (step > 0) - x) / u
@@ -134,4 +152,4 @@ def _cell_before(x, u, first, last, step, s):
     return cell
 
 
-register(GridData, Primitives(contains=_contains, leave=_leave))
+register(GridData, Primitives(contains=_contains, component=_component, leave=_leave))

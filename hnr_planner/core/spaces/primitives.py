@@ -1,16 +1,19 @@
 """
 The primitives: what a compiled space answers, and all that walks and planners ask.
 
-A compiled space is a NamedTuple of arrays. For its type two kernels are registered:
+A compiled space is a NamedTuple of arrays. For its type three kernels are registered:
 
 ``contains(space, x) -> bool``
     Whether ``x`` is a free point.
+``component(space, x) -> int``
+    Which connected part of the space holds ``x``; 0 where it is not free. No path leads from one
+    part to another. A space that does not know its parts gives all free points the same number.
 ``leave(space, x, u, t, enough) -> float``
     The first parameter ``s >= t`` at which the line ``x + s u`` leaves the space; ``t`` itself
     where the line is out already. Once the line is known to stay inside until ``enough`` the
     search may stop there: any value above ``enough`` is an answer.
 
-Compiled code calls the two by these names for any space: numba picks the kernel by the type of the
+Compiled code calls them by these names for any space: numba picks the kernel by the type of the
 NamedTuple. Interpreted code reaches the same kernels interpreted, so that both can be compared.
 """
 
@@ -27,6 +30,7 @@ class Primitives(NamedTuple):
     """The kernels of one type of compiled space."""
 
     contains: Dispatcher
+    component: Dispatcher
     leave: Dispatcher
 
 
@@ -34,13 +38,18 @@ _PRIMITIVES: dict[type, Primitives] = {}
 
 
 def register(data_type: type, primitives: Primitives) -> None:
-    """Let ``contains`` and ``leave`` answer for NamedTuples of ``data_type``."""
+    """Let the primitives answer for NamedTuples of ``data_type``."""
     _PRIMITIVES[data_type] = primitives
 
 
 def contains(space: Any, x: Any) -> bool:
     """Say whether ``x`` is a free point of ``space``."""
     return interpreted(_PRIMITIVES[type(space)].contains)(space, x)
+
+
+def component(space: Any, x: Any) -> int:
+    """Return the number of the connected part of ``space`` that holds ``x``; 0 for none."""
+    return interpreted(_PRIMITIVES[type(space)].component)(space, x)
 
 
 def leave(space: Any, x: Any, u: Any, t: float, enough: float) -> float:
@@ -51,6 +60,12 @@ def leave(space: Any, x: Any, u: Any, t: float, enough: float) -> float:
 @overload(contains)
 def _compiled_contains(space, x):
     compiled = _PRIMITIVES[space.instance_class].contains
+    return lambda space, x: compiled(space, x)
+
+
+@overload(component)
+def _compiled_component(space, x):
+    compiled = _PRIMITIVES[space.instance_class].component
     return lambda space, x: compiled(space, x)
 
 
@@ -70,6 +85,28 @@ def are_free(space, points):
 
 
 @kernel
+def contains_around(space, x, slack):
+    """Say whether ``x`` stays free when any of its coordinates changes by ``slack``."""
+    y = x.copy()
+    for i in range(len(x)):
+        for offset in (-slack, slack):
+            y[i] = x[i] + offset
+            if not contains(space, y):
+                return False
+        y[i] = x[i]
+    return contains(space, x)
+
+
+@kernel
+def components(space, points):
+    """Return the connected part (k,) int of each of ``points`` (k, dim); 0 where not free."""
+    parts = np.empty(len(points), dtype=np.int64)
+    for k in range(len(points)):
+        parts[k] = component(space, points[k])
+    return parts
+
+
+@kernel
 def chord(space, x, u):
     """Return the ends of the largest free interval of ``x + s u`` around ``s = 0``."""
     if not contains(space, x):
@@ -85,3 +122,12 @@ def sees(space, a, b):
         if component != 0.0:
             return leave(space, a, u, 0.0, 1.0) > 1.0
     return contains(space, a)
+
+
+@kernel
+def first_blocked_segment(space, points):
+    """Index of the first segment of a path (m, dim) that is not free; -1 when all are."""
+    for k in range(len(points) - 1):
+        if not sees(space, points[k], points[k + 1]):
+            return k
+    return -1

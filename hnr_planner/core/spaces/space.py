@@ -13,7 +13,7 @@ from abc import ABC, abstractmethod
 from typing import Any, NamedTuple
 
 from hnr_planner.core.checks import check_direction, check_point, check_points
-from hnr_planner.core.spaces.primitives import are_free, chord, sees
+from hnr_planner.core.spaces.primitives import are_free, chord, first_blocked_segment, sees
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -92,9 +92,9 @@ class Space(ABC):
         """Say in words why ``point`` (dim,) is not free."""
         return 'not in the space'
 
-    def reachable(self, start: Floats, goal: Floats, radius: float) -> bool | None:
-        """Say whether a path leads from ``start`` into the ball around ``goal``; None: unknown."""
-        return None
+    def region_reachable(self, start: ArrayLike, goal: ArrayLike, radius: float) -> bool:
+        """Say whether a path leads into the ball around ``goal``; True where that is not known."""
+        return True
 
     def contains(self, points: ArrayLike) -> Any:
         """
@@ -144,3 +144,9 @@ class Space(ABC):
         a = self.to_kernel(check_point('start', start, self.dim))
         b = self.to_kernel(check_point('end', end, self.dim))
         return bool(sees(self.data, a, b))
+
+    def first_blocked_segment(self, path: ArrayLike) -> int | None:
+        """Return the index of the first segment of a path (m, dim) that is not free, if any."""
+        points = self.to_kernel(check_points('path', path, self.dim))
+        k = first_blocked_segment(self.data, points)
+        return None if k < 0 else int(k)

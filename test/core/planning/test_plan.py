@@ -72,6 +72,23 @@ def test_the_first_solution_is_kept_beside_the_simplified_path():
     assert len(result.paths) == 1 and result.paths[0] is result.path
 
 
+@pytest.mark.parametrize('origin', [(3.0, -2.0, 0.7), (5e5, 5e6, -1.2)])
+@pytest.mark.parametrize('algorithm', ALGORITHMS)
+def test_what_is_returned_is_free_in_the_caller_s_coordinates(algorithm: str, origin):
+    """Turned, and in a national grid, where coordinates are rounded to 2e-8 of a cell."""
+    blocked = maps.rooms(40, 50, 8, seed=1)
+    space = GridSpace.from_blocked(blocked, 0.05, origin)
+    free = np.argwhere(space.largest_component())
+    rng = np.random.default_rng(1)
+    for seed in range(40):
+        start, goal = space.cell_centres(*free[rng.integers(len(free), size=2)].T)
+        result = plan(space, start, goal, algorithm=algorithm, seed=seed)
+        assert result.status is PlannerStatus.SOLVED
+        assert space.contains(result.samples).all()
+        np.testing.assert_array_equal(result.samples[0], start)
+        assert space.first_blocked_segment(result.path) is None
+
+
 def test_more_searches_never_give_a_longer_path():
     once = plan(SPACE, START, GOAL, seed=4)
     often = plan(SPACE, START, GOAL, seed=4, optimize_iterations=20)
@@ -186,13 +203,13 @@ def test_a_cancelled_search_ends_and_says_so():
 
 
 def test_a_search_that_only_rejects_still_hears_the_clock():
-    """One free cell in ten million: RRT's sampler finds nothing, and the limit holds."""
+    """A staircase of 20 cells in nine million: RRT's sampler finds a few of them in the time."""
     blocked = np.ones((3000, 3000), dtype=bool)
-    blocked[1500, 1500:1503] = False
-    blocked[1501, 1502] = False
+    for step in range(10):
+        blocked[1500 + step, [1500 + step, 1501 + step]] = False
     space = GridSpace.from_blocked(blocked)
     began = time.perf_counter()
-    result = plan(space, (1500.2, 1500.2), (1502.5, 1501.9), algorithm='rrt', time_limit=0.2)
+    result = plan(space, (1500.5, 1500.5), (1510.5, 1509.5), algorithm='rrt', time_limit=0.2)
     assert time.perf_counter() - began < 2.0
     assert result.status is PlannerStatus.TIMEOUT
     assert result.counts['rejected_proposals'] > 1000

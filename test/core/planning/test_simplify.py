@@ -1,5 +1,6 @@
 """Simplified paths: free, with the same ends, never longer, for a bounded amount of work."""
 
+import math
 from test.brute_force import path_collisions
 from test.laws import maps
 
@@ -39,6 +40,32 @@ def test_again_and_again_it_never_gets_longer():
         assert path_length(shorter) <= path_length(path)
         path = shorter
     assert path_collisions(path, BLOCKED, 0.1, ORIGIN) == []
+
+
+def test_a_path_around_one_corner_is_pulled_taut():
+    """The shortest way touches the corner of the wall; a simplified path comes within 1 %."""
+    blocked = np.zeros((40, 40), dtype=bool)
+    blocked[:30, 20] = True
+    space = GridSpace.from_blocked(blocked)
+    shortest = 2 * math.hypot(15.0, 28.0) + 1.0
+    for seed in range(20):
+        path = plan(space, (5, 2), (36, 2), algorithm='rrt', seed=seed, simplify=False).path
+        assert path_length(simplify(space, path, seed=seed)) <= 1.01 * shortest
+
+
+def test_a_chain_of_ninety_thousand_vertices_becomes_a_hundred():
+    blocked = maps.rooms(400, 400, 20, seed=3)
+    space = GridSpace.from_blocked(blocked)
+    cells = np.argwhere(space.largest_component())
+    ends = space.cell_centres(*cells[[0, -1]].T)
+    path = plan(
+        space, *ends, algorithm='hit_and_run', seed=0, time_limit=60.0, simplify=False
+    ).path
+    assert len(path) > 90_000
+    shorter = simplify(space, path, seed=0)
+    assert len(shorter) < 150
+    assert path_length(shorter) < 1000
+    assert path_collisions(shorter, blocked, 1.0) == []
 
 
 def test_a_straight_path_stays_as_it_is():

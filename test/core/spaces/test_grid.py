@@ -80,7 +80,7 @@ def test_lists_and_other_integers_are_maps_too():
 
 def test_a_cell_costs_at_most_twelve_bytes():
     space = GridSpace.from_blocked(maps.speckle(1000, 1000, 0.1, seed=1))
-    arrays = [space.data.free_distance, space._wall_distance, space._labels]
+    arrays = [space.data.free_distance, space._wall_distance, space.data.labels]
     assert sum(array.nbytes for array in arrays) <= 12 * 1000 * 1000
 
 
@@ -145,6 +145,12 @@ def test_a_goal_that_is_reachable_is_its_own_nearest_point():
     np.testing.assert_allclose(space.nearest_reachable((0.5, 3.5), (9.3, 3.2), 0.0), (9.3, 3.2))
 
 
+def test_without_a_limit_the_nearest_point_is_found_however_far():
+    space = GridSpace.from_blocked(maps.TWO_ROOMS)
+    nearest = space.nearest_reachable((0.5, 3.5), (1e6, 3.5), np.inf)
+    np.testing.assert_allclose(nearest, (11.0, 3.5), atol=1e-6)
+
+
 def test_nothing_is_reachable_from_a_start_that_is_not_free():
     space = GridSpace.from_blocked(maps.TWO_ROOMS)
     assert space.nearest_reachable((-1.0, 0.0), (9.5, 3.5), 100.0) is None
@@ -173,6 +179,8 @@ FREE = np.zeros((2, 3), dtype=np.int8)
         ((FREE, 0.1, (0.0, 0.0, np.inf)), 'origin must be three finite numbers'),
         ((FREE, 0.1, (0.0, 0.0)), 'origin must be three finite numbers'),
         ((FREE, 0.05, (1e9, 0.0, 0.0)), 'too far away'),
+        ((FREE, 'fine'), "resolution must be a number, got 'fine'"),
+        ((FREE, 0.1, 'here'), "origin must be three finite numbers .* got 'here'"),
     ],
 )
 def test_a_map_that_is_none_is_refused(arguments, words: str):
@@ -186,6 +194,8 @@ def test_a_map_that_is_none_is_refused(arguments, words: str):
     [
         ({'robot_radius': -0.1}, 'robot_radius must be at least 0 and finite, got -0.1'),
         ({'robot_radius': np.nan}, 'robot_radius .* got nan'),
+        ({'robot_radius': None}, 'robot_radius must be a number, got None'),
+        ({'occupied_threshold': 65.5}, 'occupied_threshold must be a whole number, got 65.5'),
         ({'occupied_threshold': 0}, r'occupied_threshold must be in 1..100, got 0'),
         ({'occupied_threshold': 101}, r'occupied_threshold must be in 1..100, got 101'),
         ({'unknown': 'maybe'}, "'blocked' or 'free', got 'maybe'"),

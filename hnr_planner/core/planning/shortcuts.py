@@ -1,0 +1,183 @@
+"""
+Ways to shorten a path by visibility, as kernels: each only ever shortens, and counts its tests.
+
+``skip``: a vertex is followed by the last one that it sees. ``tighten``: random points of the path
+are joined; each vertex is pulled towards the line between its neighbours until something is in the
+way, and what corner is left there is cut off, so that the path comes to lie taut around obstacles.
+"""
+
+import math
+
+from hnr_planner.core.kernels import kernel
+from hnr_planner.core.spaces.primitives import sees
+import numpy as np
+
+#: Random pairs of points that ``tighten`` tries to join, for each segment of the path.
+TRIES = 5
+#: Halvings of the way on which a vertex is pulled or its corner cut.
+HALVINGS = 12
+#: A corner is cut for a gain of more than this part of its two segments.
+LEAST_CUT = 1e-3
+
+
+@kernel
+def skip(space, points, kept, n_kept, looked_at, tests_max):
+    """
+    Go on from the last vertex kept to the last one that it sees, and so on.
+
+    Of a long path a vertex looks at ``looked_at`` others, evenly spread over what is ahead.
+    Returns (vertices kept, visibility tests).
+    """
+    last, tests = len(points) - 1, 0
+    while tests < tests_max and kept[n_kept - 1] < last:
+        at = kept[n_kept - 1]
+        stride = 1 + (last - at) // looked_at
+        found = last
+        while found > at + 1:
+            tests += 1
+            if sees(space, points[at], points[found]):
+                break
+            found -= stride
+        kept[n_kept] = max(found, at + 1)
+        n_kept += 1
+    return n_kept, tests
+
+
+@kernel
+def tighten(space, points, margin, rng, tests_max):
+    """Join random points of the path, then pull and cut at each vertex: (path, tests)."""
+    tests = 0
+    for _ in range(TRIES * (len(points) - 1)):
+        if tests >= tests_max:
+            break
+        points = _join_two(space, points, rng)
+        tests += 3
+    k = 1
+    while k < len(points) - 1 and tests < tests_max:
+        if sees(space, points[k - 1], points[k + 1]):
+            points = _replaced(points, k, points[:0])
+            tests += 1
+            continue
+        _pull(space, points[k - 1], points[k], points[k + 1], margin)
+        corner = _cut(space, points[k - 1], points[k], points[k + 1], margin)
+        tests += 1 + 3 * HALVINGS
+        points = _replaced(points, k, corner)
+        k += len(corner)
+    return points, tests
+
+
+@kernel
+def _pull(space, a, x, b, margin):
+    """Pull ``x`` towards the segment a-b to ``margin`` before it would lose sight of an end."""
+    way = _nearest_on_segment(x, a, b) - x
+    free, blocked = 0.0, 1.0
+    for _ in range(HALVINGS):
+        middle = (free + blocked) / 2.0
+        y = x + middle * way
+        if sees(space, a, y) and sees(space, y, b):
+            free = middle
+        else:
+            blocked = middle
+    length = _distance(x, x + way)
+    if free * length > margin:
+        x += (free - margin / length) * way
+
+
+@kernel
+def _cut(space, a, x, b, margin):
+    """Cut off the corner a-x-b as far as the cut is free: its two ends, ``x`` for little gain."""
+    free, blocked = 0.0, 1.0
+    for _ in range(HALVINGS):
+        middle = (free + blocked) / 2.0
+        if sees(space, x + middle * (a - x), x + middle * (b - x)):
+            free = middle
+        else:
+            blocked = middle
+    corner = np.empty((2, len(x)))
+    around = _distance(a, x) + _distance(x, b)
+    free = max(free - margin / around, 0.0)
+    corner[0], corner[1] = x + free * (a - x), x + free * (b - x)
+    gain = free * around - _distance(corner[0], corner[1])
+    if gain > LEAST_CUT * around:
+        return corner
+    corner[0] = x
+    return corner[:1]
+
+
+@kernel
+def _replaced(points, k, others):
+    """Path with vertex ``k`` replaced by ``others`` (n, dim)."""
+    after = k + 1
+    return np.concatenate((points[:k], others, points[after:]))
+
+
+@kernel
+def _nearest_on_segment(x, a, b):
+    """Point of the segment a-b that is nearest to ``x``."""
+    along, squared = 0.0, 0.0
+    for i in range(len(x)):
+        along += (x[i] - a[i]) * (b[i] - a[i])
+        squared += (b[i] - a[i]) ** 2
+    if squared == 0.0:
+        return a.copy()
+    return a + min(max(along / squared, 0.0), 1.0) * (b - a)
+
+
+@kernel
+def _distance(a, b):
+    squared = 0.0
+    for i in range(len(a)):
+        squared += (b[i] - a[i]) ** 2
+    return math.sqrt(squared)
+
+
+@kernel
+def _join_two(space, points, rng):
+    """Try to join two random points of the path, uniform along its length, directly."""
+    along = _lengths_along(points)
+    s, t = along[-1] * rng.random(), along[-1] * rng.random()
+    i, j = _segment_at(along, min(s, t)), _segment_at(along, max(s, t))
+    if i == j:
+        return points
+    a, b = _point_on(points, along, i, min(s, t)), _point_on(points, along, j, max(s, t))
+    if sees(space, points[i], a) and sees(space, a, b) and sees(space, b, points[j + 1]):
+        return _joined(points, i, a, b, j + 1)
+    return points
+
+
+@kernel
+def _lengths_along(points):
+    """Length of the path up to each of its vertices (m,)."""
+    along = np.zeros(len(points))
+    for k in range(1, len(points)):
+        along[k] = along[k - 1] + _distance(points[k - 1], points[k])
+    return along
+
+
+@kernel
+def _segment_at(along, s):
+    """Index of the segment that holds the point at length ``s``."""
+    k = 0
+    while k < len(along) - 2 and along[k + 1] <= s:
+        k += 1
+    return k
+
+
+@kernel
+def _point_on(points, along, k, s):
+    """Point at length ``s`` on segment ``k``."""
+    length = along[k + 1] - along[k]
+    fraction = (s - along[k]) / length if length > 0.0 else 0.0
+    return points[k] + fraction * (points[k + 1] - points[k])
+
+
+@kernel
+def _joined(points, i, a, b, j):
+    """Path with everything between vertices ``i`` and ``j`` replaced by the segment a-b."""
+    kept = i + 1
+    shorter = np.empty((kept + 2 + len(points) - j, points.shape[1]))
+    shorter[:kept] = points[:kept]
+    shorter[kept], shorter[kept + 1] = a, b
+    tail = kept + 2
+    shorter[tail:] = points[j:]
+    return shorter
