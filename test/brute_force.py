@@ -45,7 +45,8 @@ def blocked_cells(
         for j in range(-reach, reach + 1):
             if i**2 + j**2 <= largest:
                 # Cell [row, col] is blocked by an occupied cell [row + i, col + j].
-                blocked |= padded[reach + i :, reach + j :][:rows, :cols]
+                row, col = reach + i, reach + j
+                blocked |= padded[row:, col:][:rows, :cols]
     if unknown is not None:
         blocked |= np.asarray(unknown, dtype=bool)
     return blocked
@@ -188,7 +189,9 @@ def _segment(a: NDArray, b: NDArray, blocked: NDArray[np.bool_]) -> list[str]:
     ringed = np.pad(blocked, 1, constant_values=True)
     first_col, first_row = np.maximum(np.floor(lowest).astype(int) - 2, -1)
     last_col, last_row = np.minimum(np.floor(highest).astype(int) + 2, (cols, rows))
-    near = ringed[first_row + 1 : last_row + 2, first_col + 1 : last_col + 2]
+    top, right = last_row + 2, last_col + 2
+    bottom, left = first_row + 1, first_col + 1
+    near = ringed[bottom:top, left:right]
 
     found = []
     for height, width in ((1, 1), (1, 2), (2, 1), (2, 2)):
@@ -205,10 +208,11 @@ def _segment(a: NDArray, b: NDArray, blocked: NDArray[np.bool_]) -> list[str]:
 def _all_blocked(cells: NDArray[np.bool_], height: int, width: int) -> NDArray[np.bool_]:
     """Return for every window of the given size whether all its cells are blocked."""
     rows, cols = cells.shape
-    full = np.ones((rows - height + 1, cols - width + 1), dtype=bool)
+    rows_left, cols_left = rows - height + 1, cols - width + 1
+    full = np.ones((rows_left, cols_left), dtype=bool)
     for i in range(height):
         for j in range(width):
-            full &= cells[i : i + full.shape[0], j : j + full.shape[1]]
+            full &= cells[i:, j:][:rows_left, :cols_left]
     return full
 
 

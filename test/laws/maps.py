@@ -83,7 +83,8 @@ def wide_hall(rows: int, cols: int) -> NDArray[np.bool_]:
     occupied = np.zeros((rows, cols), dtype=bool)
     for row in (rows // 4, 3 * rows // 4):
         for col in (cols // 4, 3 * cols // 4):
-            occupied[row : row + 3, col : col + 2] = True
+            top, right = row + 3, col + 2
+            occupied[row:top, col:right] = True
     return occupied
 
 

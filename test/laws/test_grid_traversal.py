@@ -58,7 +58,8 @@ def plain(blocked, point, direction):
         _touched(point[0], direction[0]),
         _touched(point[1], direction[1]),
     )
-    if blocked[first_row : last_row + 1, first_col : last_col + 1].any():
+    top, right = last_row + 1, last_col + 1
+    if blocked[first_row:top, first_col:right].any():
         return 0.0
     # The cells ahead: of two that touch the start across the direction, only one is.
     if direction[0] != 0:
