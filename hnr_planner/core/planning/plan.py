@@ -221,8 +221,9 @@ def _compile(request: Request) -> None:
     space, kinds = request.space, (type(request.space.data), type(request.planner))
     if kinds in _compiled:
         return
-    rng = np.random.default_rng(0)
-    search = request.planner.start(request.problem, rng, space.scale)
+    # A corner of the bounds is never free, so no search is solved before it has begun.
+    unsolved = request.problem._replace(goal=request.problem.lower, goal_radius=0.0)
+    search = request.planner.start(unsolved, np.random.default_rng(0), space.scale)
     search.advance(0)
     refusal(request)
     ends = np.stack([request.start, request.goal])

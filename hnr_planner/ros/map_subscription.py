@@ -1,0 +1,112 @@
+"""The subscription to `map`, which adapts to what the publisher offers."""
+
+from collections.abc import Callable
+
+from nav_msgs.msg import OccupancyGrid
+from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
+from rclpy.event_handler import QoSRequestedIncompatibleQoSInfo, SubscriptionEventCallbacks
+from rclpy.node import Node
+from rclpy.qos import (
+    DurabilityPolicy,
+    qos_check_compatible,
+    QoSCompatibility,
+    QoSPolicyKind,
+    QoSProfile,
+    ReliabilityPolicy,
+)
+from rclpy.subscription import Subscription
+
+TOPIC = 'map'
+
+
+class MapSubscription:
+    """
+    One subscription to the map, reliable and, if wished, transient local.
+
+    A publisher that offers less is named in a warning, and the subscription is made anew with
+    what is offered; once every publisher offers what was wished, it goes back to that.
+    """
+
+    def __init__(
+        self, node: Node, receive: Callable[[OccupancyGrid], None], transient_local: bool
+    ) -> None:
+        self._node = node
+        self._receive = receive
+        self._group = MutuallyExclusiveCallbackGroup()
+        durability = DurabilityPolicy.TRANSIENT_LOCAL if transient_local else _VOLATILE
+        self._wished = _profile(durability, ReliabilityPolicy.RELIABLE)
+        self._subscription = self._subscribe(self._wished)
+
+    @property
+    def topic(self) -> str:
+        """Return the full name of the topic."""
+        return str(self._subscription.topic_name)
+
+    def go_back_if_possible(self) -> None:
+        """Subscribe as wished again when all publishers that are there now allow it."""
+        if self._subscription.qos_profile.durability == self._wished.durability and (
+            self._subscription.qos_profile.reliability == self._wished.reliability
+        ):
+            return
+        publishers = self._node.get_publishers_info_by_topic(self.topic)
+        if publishers and all(_serves(info.qos_profile, self._wished) for info in publishers):
+            self._node.get_logger().info(
+                f'{self.topic}: every publisher offers {_in_words(self._wished)} now; subscribed '
+                'that way again'
+            )
+            self._replace(self._wished)
+
+    def _accept_less(self, event: QoSRequestedIncompatibleQoSInfo) -> None:
+        """Subscribe with what an incompatible publisher offers, and say so."""
+        now = self._subscription.qos_profile
+        durability, reliability = now.durability, now.reliability
+        if event.last_policy_kind == QoSPolicyKind.DURABILITY:
+            durability = _VOLATILE
+        elif event.last_policy_kind == QoSPolicyKind.RELIABILITY:
+            reliability = ReliabilityPolicy.BEST_EFFORT
+        else:
+            return
+        lesser = _profile(durability, reliability)
+        missing = (
+            'a map that was published before this moment is not received'
+            if durability == _VOLATILE
+            else 'a map that gets lost on the way is not sent again'
+        )
+        self._node.get_logger().warning(
+            f'{self.topic}: a publisher offers less than {_in_words(now)}, so nothing would come '
+            f'from it; subscribed anew as {_in_words(lesser)}: {missing}'
+        )
+        self._replace(lesser)
+
+    def _replace(self, profile: QoSProfile) -> None:
+        old = self._subscription
+        self._subscription = self._subscribe(profile)
+        self._node.destroy_subscription(old)
+
+    def _subscribe(self, profile: QoSProfile) -> Subscription:
+        return self._node.create_subscription(
+            OccupancyGrid,
+            TOPIC,
+            self._receive,
+            profile,
+            callback_group=self._group,
+            event_callbacks=SubscriptionEventCallbacks(incompatible_qos=self._accept_less),
+        )
+
+
+_VOLATILE = DurabilityPolicy.VOLATILE
+
+
+def _profile(durability: DurabilityPolicy, reliability: ReliabilityPolicy) -> QoSProfile:
+    return QoSProfile(depth=1, durability=durability, reliability=reliability)
+
+
+def _serves(offered: QoSProfile, wished: QoSProfile) -> bool:
+    """Return whether a publisher with `offered` reaches a subscription with `wished`."""
+    compatibility, _ = qos_check_compatible(offered, wished)
+    return compatibility != QoSCompatibility.ERROR
+
+
+def _in_words(profile: QoSProfile) -> str:
+    """Return reliability and durability in words."""
+    return f'{profile.reliability.name} and {profile.durability.name}'.lower().replace('_', ' ')

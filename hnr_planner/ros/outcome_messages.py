@@ -1,0 +1,74 @@
+"""`diagnostic_msgs/DiagnosticArray`: the outcome of a request, and the health of the node."""
+
+from collections.abc import Mapping
+
+from builtin_interfaces.msg import Time
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
+from hnr_planner.ros.outcomes import Outcome
+from hnr_planner.ros.requests import Report
+from std_msgs.msg import Header
+
+
+def outcome_values(report: Report) -> dict[str, str]:
+    """Return everything worth knowing about an answer; seconds and metres, NaN where unknown."""
+    values = {
+        'why': report.why,
+        'algorithm': report.request.algorithm,
+        'elapsed': f'{report.elapsed:.6f}',
+        'clearance': f'{report.clearance:.6g}',
+        'offset': f'{report.offset:.6g}',
+    }
+    result = report.result
+    if result is not None:
+        first_elapsed, first_length = result.first_solution or (float('nan'), float('nan'))
+        values |= {
+            'algorithm': result.planner,
+            'seed': str(result.seed),
+            'iterations': str(result.iterations),
+            'samples': str(len(result.samples)),
+            'planning_time': f'{result.elapsed:.6f}',
+            'first_solution_time': f'{first_elapsed:.6f}',
+            'first_solution_length': f'{first_length:.6g}',
+            'length': f'{result.length:.6g}',
+            'cut_by_time': str(bool(result.cut_by_time)).lower(),
+        }
+    return values
+
+
+def outcome_message(report: Report, name: str, stamp: Time) -> DiagnosticArray:
+    """Return the outcome of one request; `name` says which node and service answered it."""
+    level = DiagnosticStatus.OK if report.solved else DiagnosticStatus.WARN
+    return _array(level, name, report.outcome.name, outcome_values(report), report.frame, stamp)
+
+
+def health_message(
+    healthy: bool, name: str, message: str, values: Mapping[str, str], stamp: Time
+) -> DiagnosticArray:
+    """Return the health of the node in the form that diagnostic viewers show."""
+    level = DiagnosticStatus.OK if healthy else DiagnosticStatus.WARN
+    return _array(level, name, message, values, '', stamp)
+
+
+def read_outcome(message: DiagnosticArray) -> tuple[Outcome, dict[str, str]]:
+    """Return the name and the values of an outcome that was received."""
+    status = message.status[0]
+    return Outcome[status.message], {item.key: item.value for item in status.values}
+
+
+def _array(
+    level: bytes,
+    name: str,
+    message: str,
+    values: Mapping[str, str],
+    frame: str,
+    stamp: Time,
+) -> DiagnosticArray:
+    """Return an array of one status."""
+    status = DiagnosticStatus(
+        level=level,
+        name=name,
+        message=message,
+        hardware_id='',
+        values=[KeyValue(key=key, value=value) for key, value in values.items()],
+    )
+    return DiagnosticArray(header=Header(stamp=stamp, frame_id=frame), status=[status])

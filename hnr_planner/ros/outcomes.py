@@ -1,0 +1,32 @@
+"""The names under which a request can end, and the refusal that carries one."""
+
+import enum
+
+from hnr_planner.core import HnrError
+
+
+class Outcome(enum.Enum):
+    """How a request ended; those that the planner itself decides bear its status' name."""
+
+    SOLVED = enum.auto()
+    NO_MAP = enum.auto()
+    MAP_NOT_READY = enum.auto()
+    MAP_CHANGED = enum.auto()
+    BAD_REQUEST = enum.auto()
+    BAD_FRAME = enum.auto()
+    INVALID_START = enum.auto()
+    INVALID_GOAL = enum.auto()
+    UNREACHABLE = enum.auto()
+    TIMEOUT = enum.auto()
+    ITERATION_LIMIT = enum.auto()
+    CANCELLED = enum.auto()
+    INTERNAL_ERROR = enum.auto()
+
+
+class Refusal(HnrError):
+    """A request ends before anything is planned: the outcome's name, and why in words."""
+
+    def __init__(self, outcome: Outcome, why: str) -> None:
+        super().__init__(why)
+        self.outcome = outcome
+        self.why = why

@@ -1,0 +1,152 @@
+"""
+The life of a node's process, the same for every node here: prepare, make, spin, end cleanly.
+
+Executors do not notice a signal before their next wake-up, and rclpy's own handlers shut the
+context down under running callbacks. Here a signal only wakes the main thread: callers that wait
+get their answers, the queue of results is published, and then everything is taken down in order.
+SIGINT and SIGTERM end the process with exit code 0, however often and whenever they come.
+"""
+
+from collections.abc import Callable
+import os
+import signal
+import sys
+import threading
+import traceback
+from types import FrameType
+from typing import TypeVar
+
+from hnr_planner.core import HnrError
+import rclpy
+from rclpy.executors import MultiThreadedExecutor
+from rclpy.impl.rcutils_logger import RcutilsLogger
+from rclpy.logging import get_logger
+from rclpy.node import Node
+from rclpy.signals import SignalHandlerOptions
+
+NodeType = TypeVar('NodeType', bound=Node)
+
+
+def run(
+    name: str,
+    make_node: Callable[[], NodeType],
+    *,
+    threads: int,
+    prepare: Callable[[RcutilsLogger], None] | None = None,
+    before_shutdown: Callable[[NodeType], None] | None = None,
+) -> int:
+    """
+    Run a node until SIGINT or SIGTERM and return the process' exit code.
+
+    Parameters
+    ----------
+    name : str
+        Name for the log before there is a node.
+    make_node : callable
+        Makes the node; an HnrError that it raises is one line on the log and exit code 1.
+    threads : int
+        Threads that run callbacks.
+    prepare : callable, optional
+        Long work before ROS is started; a signal ends it at once.
+    before_shutdown : callable, optional
+        Tells the node's running callbacks to end.
+
+    """
+    stop = _StopSignal()
+    logger = get_logger(name)
+    if prepare is not None:
+        prepare(logger)
+    stop.wait_for_owner()
+    try:
+        rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
+        node = make_node()
+    except (HnrError, RuntimeError) as error:  # rclpy's own errors are RuntimeErrors
+        logger.fatal(' '.join(str(error).split()))
+        rclpy.try_shutdown()
+        return 1
+    try:
+        return _spin(node, threads, stop, before_shutdown)
+    finally:
+        node.destroy_node()
+        rclpy.try_shutdown()
+
+
+def _spin(
+    node: NodeType,
+    threads: int,
+    stop: '_StopSignal',
+    before_shutdown: Callable[[NodeType], None] | None,
+) -> int:
+    """Spin in a thread of its own until a signal comes or a callback fails."""
+    executor = _Executor(threads)
+    executor.add_node(node)
+    failures: list[Exception] = []
+    ending = threading.Event()
+    wake_up = node.create_guard_condition(lambda: None)
+
+    def spin() -> None:
+        try:
+            while not ending.is_set():
+                executor.spin_once()
+        except Exception as error:
+            failures.append(error)
+            stop.request()
+
+    spinning = threading.Thread(target=spin, name='spin', daemon=True)
+    spinning.start()
+    stop.wait()
+    ending.set()
+    wake_up.trigger()
+    spinning.join()
+    if before_shutdown is not None:
+        before_shutdown(node)
+    executor.finish()
+    for failure in failures:
+        traceback.print_exception(failure)
+    return 1 if failures else 0
+
+
+class _Executor(MultiThreadedExecutor):
+    """An executor that ends in order: no callback is left that would miss what it needs."""
+
+    def finish(self) -> None:
+        """Wait for the callbacks that have begun, then end."""
+        self._executor.shutdown(wait=True)
+        self.shutdown()
+
+
+class _StopSignal:
+    """SIGINT and SIGTERM: they end the process at once until an owner waits for them."""
+
+    def __init__(self) -> None:
+        self._reader, self._writer = os.pipe()
+        os.set_blocking(self._writer, False)
+        for number in (signal.SIGINT, signal.SIGTERM):
+            signal.signal(number, _leave_at_once)
+
+    def wait_for_owner(self) -> None:
+        """From now on, only remember a signal until `wait`."""
+        # Python runs a handler only when the main thread is back from C; the pipe is written to
+        # by the C handler itself, in whatever thread the signal comes.
+        signal.set_wakeup_fd(self._writer, warn_on_full_buffer=False)
+        for number in (signal.SIGINT, signal.SIGTERM):
+            signal.signal(number, _remembered_by_pipe)
+
+    def request(self) -> None:
+        """Wake the owner without a signal."""
+        os.write(self._writer, b'\0')
+
+    def wait(self) -> None:
+        """Return once a signal has come, or came since `wait_for_owner`."""
+        os.read(self._reader, 1)
+
+
+def _leave_at_once(_number: int, _frame: FrameType | None) -> None:
+    """End the process: nothing has been started that would have to be ended in order."""
+    sys.stdout.flush()
+    sys.stderr.flush()
+    os._exit(0)
+
+
+def _remembered_by_pipe(_number: int, _frame: FrameType | None) -> None:
+    """Do nothing: the wake-up pipe has the signal already."""

@@ -1,0 +1,153 @@
+"""
+What can be set on the planner, each with its meaning, unit, range and default.
+
+`Settings` is the one table: the node declares its ROS parameters from it, requests are answered
+with a frozen copy of it, and the documented configuration is held to it.
+"""
+
+import dataclasses
+from dataclasses import dataclass
+from typing import Any
+
+from hnr_planner.core import ALGORITHMS, HnrError
+
+LARGEST_INT = 2**31 - 1
+
+
+class SettingsError(HnrError, ValueError):
+    """A parameter was given a value that it cannot have."""
+
+
+@dataclass(frozen=True)
+class Rule:
+    """What a parameter means and which values it takes."""
+
+    description: str
+    unit: str = ''
+    lower: float | None = None
+    upper: float | None = None
+    choices: tuple[str, ...] = ()
+    read_only: bool = False
+
+    def check(self, name: str, value: Any) -> None:
+        """Raise SettingsError, with the value and the rule, when `value` breaks this rule."""
+        if self.choices and value not in self.choices:
+            names = ', '.join(self.choices)
+            raise SettingsError(f'{name} must be one of {names}, got {value!r}')
+        if self.lower is not None and self.upper is not None:
+            if not self.lower <= value <= self.upper:
+                unit = f' {self.unit}' if self.unit else ''
+                allowed = f'{self.lower:.10g}..{self.upper:.10g}{unit}'
+                raise SettingsError(f'{name} must be in {allowed}, got {value!r}')
+
+
+def _setting(default: Any, description: str, unit: str = '', **rule: Any) -> Any:
+    """Return a field of `Settings` that carries its rule."""
+    metadata = {'rule': Rule(description, unit, **rule)}
+    return dataclasses.field(default=default, metadata=metadata)
+
+
+@dataclass(frozen=True)
+class Settings:
+    """The parameters of the planning node, checked; a request is answered with one such copy."""
+
+    algorithm: str = _setting('auto', 'Algorithm of the service ~/plan.', choices=ALGORITHMS)
+    robot_radius: float = _setting(
+        0.0,
+        'Radius of the robot as a circle: give the circumscribed one. 0 for a map that is '
+        'inflated already.',
+        'm',
+        lower=0.0,
+        upper=1000.0,
+    )
+    unknown: str = _setting(
+        'blocked', 'Whether the robot may enter unknown cells.', choices=('blocked', 'free')
+    )
+    occupied_threshold: int = _setting(
+        65,
+        'A cell with this value or more is occupied; 99, with robot_radius 0, for a Nav2 costmap.',
+        lower=1,
+        upper=100,
+    )
+    time_limit: float = _setting(
+        1.0, 'Longest time for the whole planning of one request.', 's', lower=0.001, upper=3600.0
+    )
+    max_iterations: int = _setting(
+        0,
+        'Most transitions (proposals handled) for one request; 0 for no limit.',
+        lower=0,
+        upper=LARGEST_INT,
+    )
+    goal_radius: float = _setting(
+        0.0,
+        'The goal is reached within this distance; 0: the path ends exactly at the goal.',
+        'm',
+        lower=0.0,
+        upper=1000.0,
+    )
+    simplify: bool = _setting(True, 'Shorten the path that was found by visibility.')
+    optimize_for: float = _setting(
+        0.0,
+        'Time to go on and look for a shorter path, inside time_limit.',
+        's',
+        lower=0.0,
+        upper=3600.0,
+    )
+    seed: int = _setting(
+        -1,
+        'Seed of every request; -1: a fresh one for each request. The outcome states it.',
+        lower=-1,
+        upper=LARGEST_INT,
+    )
+    pose_spacing: float = _setting(
+        -1.0,
+        'Largest distance between poses of the path; -1: the resolution of the map; 0: the '
+        'vertices only.',
+        'm',
+        lower=-1.0,
+        upper=1000.0,
+    )
+    samples_max: int = _setting(
+        100_000, 'Most samples in ~/samples for one request.', lower=0, upper=10_000_000
+    )
+    map_subscribe_transient_local: bool = _setting(
+        True,
+        'Ask for a latched map (as map_server offers it). Read only: set it when the node starts.',
+        read_only=True,
+    )
+
+    def __post_init__(self) -> None:
+        """Check every value against its rule."""
+        for name, rule in RULES.items():
+            rule.check(name, getattr(self, name))
+        if -1.0 < self.pose_spacing < 0.0:
+            raise SettingsError(
+                f'pose_spacing must be -1 (the resolution of the map), 0 (vertices only) or '
+                f'positive, got {self.pose_spacing!r}'
+            )
+
+    @property
+    def space_arguments(self) -> dict[str, Any]:
+        """Return what decides how a map becomes a space."""
+        return {
+            'robot_radius': self.robot_radius,
+            'unknown': self.unknown,
+            'occupied_threshold': self.occupied_threshold,
+        }
+
+    @property
+    def plan_arguments(self) -> dict[str, Any]:
+        """Return what `plan` takes from the settings, besides the time that is left."""
+        return {
+            'goal_radius': self.goal_radius,
+            'max_iterations': self.max_iterations or None,
+            'seed': None if self.seed < 0 else self.seed,
+            'simplify': self.simplify,
+            'optimize_for': self.optimize_for,
+        }
+
+
+RULES: dict[str, Rule] = {
+    field.name: field.metadata['rule'] for field in dataclasses.fields(Settings)
+}
+DEFAULTS = Settings()

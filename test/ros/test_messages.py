@@ -1,0 +1,184 @@
+"""Messages to and from arrays, without a node."""
+
+from dataclasses import replace
+import math
+
+from builtin_interfaces.msg import Time
+from hnr_planner.core import GridSpace, plan
+from hnr_planner.ros.map_messages import as_written, grid_from_message, message_from_grid
+from hnr_planner.ros.map_store import Grid, MapError, MapSnapshot
+from hnr_planner.ros.marker_messages import markers_message, MOST_POINTS
+from hnr_planner.ros.outcomes import Outcome
+from hnr_planner.ros.requests import Pose, Report, Request
+from hnr_planner.ros.sample_messages import LAYOUT, samples_message
+from nav_msgs.msg import OccupancyGrid
+import numpy as np
+import pytest
+from sensor_msgs.msg import PointCloud2
+from visualization_msgs.msg import Marker
+
+STAMP = Time(sec=12, nanosec=34)
+DATA = np.arange(-1, 5, dtype=np.int8).reshape(2, 3)
+
+
+def message(**changes: object) -> OccupancyGrid:
+    """Return a good map message, with some fields changed."""
+    result = message_from_grid(Grid(DATA, 0.05, (1.0, -2.0, 0.5), 'floor'), STAMP)
+    for name, value in changes.items():
+        place = result
+        *parents, field = name.split('__')
+        for parent in parents:
+            place = getattr(place, parent)
+        setattr(place, field, value)
+    return result
+
+
+def test_map_survives_the_way_there_and_back() -> None:
+    grid = grid_from_message(message())
+    assert np.array_equal(grid.data, DATA)
+    assert grid.data.dtype == np.int8
+    assert grid.resolution == 0.05
+    assert grid.origin == pytest.approx((1.0, -2.0, 0.5), abs=1e-15)
+    assert grid.frame == 'floor'
+
+
+@pytest.mark.parametrize('resolution', [0.05, 0.1, 0.025, 1.0, 0.03, 1e-3, 12.5])
+def test_resolution_is_read_as_it_was_written(resolution: float) -> None:
+    assert as_written(float(np.float32(resolution))) == resolution
+
+
+BAD_MAPS = {
+    'no cells': {'info__width': 0},
+    'width 3 x height 3': {'info__height': 3},
+    'resolution must be positive and finite, got 0': {'info__resolution': 0.0},
+    'got -0.05': {'info__resolution': -0.05},
+    'resolution must be positive and finite, got nan': {'info__resolution': math.nan},
+    'resolution must be positive and finite, got inf': {'info__resolution': math.inf},
+    r'\(nan, -2': {'info__origin__position__x': math.nan},
+    r'\(1.0, inf': {'info__origin__position__y': math.inf},
+    'norm above 0, got .*nan': {'info__origin__orientation__z': math.nan},
+    'level': {'info__origin__orientation__x': 0.5},
+}
+
+
+@pytest.mark.parametrize(('words', 'changes'), BAD_MAPS.items())
+def test_impossible_map_is_refused_with_the_value(words: str, changes: dict) -> None:
+    with pytest.raises(MapError, match=words):
+        grid_from_message(message(**changes))
+
+
+def test_origin_without_orientation_is_refused() -> None:
+    bad = message(info__origin__orientation__z=0.0, info__origin__orientation__w=0.0)
+    with pytest.raises(MapError, match='norm above 0'):
+        grid_from_message(bad)
+
+
+def test_yaw_of_an_origin_of_any_norm_is_read() -> None:
+    scaled = message(
+        info__origin__orientation__z=7.0 * math.sin(0.25),
+        info__origin__orientation__w=7.0 * math.cos(0.25),
+    )
+    assert grid_from_message(scaled).origin[2] == pytest.approx(0.5)
+
+
+def report_on_a_map() -> Report:
+    """Return a solved request with a tree of some size."""
+    data = np.zeros((60, 60), dtype=np.int8)
+    data[5:55, 20] = data[5:55, 40] = 100
+    grid = Grid(data, 0.1, (3.0, 4.0, 0.3), 'map')
+    space = GridSpace.from_occupancy(data, grid.resolution, grid.origin)
+    start, goal = space.cell_centres(np.array([30, 30]), np.array([5, 55]))
+    result = plan(space, start, goal, algorithm='rrt', seed=1, simplify=False)
+    request = Request(Pose((*start, 0.0)), Pose((*goal, 0.0)), 0.0, 'rrt')
+    return Report(
+        Outcome[result.status.name], '', request, 0.0, MapSnapshot(space, grid, 1), result
+    )
+
+
+def points_in(cloud: PointCloud2) -> np.ndarray:
+    """Return the points of a cloud by the description that it brings along."""
+    types = {5: 'i4', 6: 'u4', 7: 'f4'}  # the numbers that sensor_msgs/PointField defines
+    layout = np.dtype(
+        {
+            'names': [field.name for field in cloud.fields],
+            'formats': [types[field.datatype] for field in cloud.fields],
+            'offsets': [field.offset for field in cloud.fields],
+            'itemsize': cloud.point_step,
+        }
+    )
+    return np.frombuffer(cloud.data.tobytes(), dtype=layout)
+
+
+def test_cloud_holds_samples_and_parents_of_the_result() -> None:
+    result = report_on_a_map().result
+    assert result is not None and len(result.samples) > 10
+    cloud = samples_message(result, 100_000, 'map', STAMP)
+    points = points_in(cloud)
+    assert (cloud.header.frame_id, cloud.header.stamp) == ('map', STAMP)
+    assert (cloud.height, cloud.width) == (1, len(result.samples))
+    assert cloud.row_step == cloud.width * cloud.point_step == len(cloud.data)
+    assert np.array_equal(
+        np.stack([points['x'], points['y']], 1), result.samples.astype(np.float32)
+    )
+    assert np.array_equal(points['index'], np.arange(len(points)))
+    assert np.array_equal(points['parent'], result.parents)
+    assert not points['z'].any()
+
+
+def test_capped_cloud_refers_to_its_own_points() -> None:
+    result = report_on_a_map().result
+    assert result is not None
+    points = points_in(samples_message(result, 9, 'map', STAMP))
+    assert len(points) == 9
+    # By place, since vertices of RRT at a wall may coincide in single precision.
+    samples = [tuple(xy) for xy in result.samples.astype(np.float32).tolist()]
+    edges = {
+        (xy, samples[parent] if parent >= 0 else None)
+        for xy, parent in zip(samples, result.parents, strict=True)
+    }
+    shown = [tuple(xy) for xy in np.stack([points['x'], points['y']], axis=1).tolist()]
+    for xy, parent in zip(shown, points['parent'], strict=True):
+        assert (xy, shown[parent] if parent >= 0 else None) in edges
+
+
+def test_cloud_without_a_result_is_empty_and_well_formed() -> None:
+    cloud = samples_message(None, 100, '', STAMP)
+    assert (cloud.width, len(cloud.data), cloud.point_step) == (0, 0, LAYOUT.itemsize)
+
+
+def test_markers_show_samples_tree_path_and_ends() -> None:
+    report = report_on_a_map()
+    assert report.result is not None
+    first, *shapes = markers_message(report, STAMP).markers
+    assert first.action == Marker.DELETEALL
+    by_name = {shape.ns: shape for shape in shapes}
+    assert {name: shape.type for name, shape in by_name.items()} == {
+        'samples': Marker.POINTS,
+        'tree': Marker.LINE_LIST,
+        'path': Marker.LINE_STRIP,
+        'start': Marker.SPHERE,
+        'goal': Marker.SPHERE,
+    }
+    assert len(by_name['samples'].points) == len(report.result.samples)
+    assert len(by_name['tree'].points) == 2 * (len(report.result.samples) - 1)
+    assert len(by_name['path'].points) == len(report.path)
+    assert by_name['goal'].pose.position.x == report.path[-1][0]
+    assert all(shape.header.stamp == STAMP for shape in (first, *shapes))
+
+
+def test_markers_are_capped() -> None:
+    report = report_on_a_map()
+    assert report.result is not None
+    chain = np.linspace((3.0, 4.0), (4.0, 5.0), 3 * MOST_POINTS)
+    parents = np.arange(-1, len(chain) - 1)
+    result = replace(report.result, samples=chain, parents=parents, path=chain)
+    report = replace(report, result=result)
+    sizes = {shape.ns: len(shape.points) for shape in markers_message(report, STAMP).markers}
+    assert sizes['samples'] == sizes['path'] == MOST_POINTS
+    assert MOST_POINTS - 2 <= sizes['tree'] <= MOST_POINTS
+
+
+def test_markers_are_cleared_after_a_failure() -> None:
+    request = Request(Pose((0.0, 0.0, 0.0)), Pose((1.0, 1.0, 0.0)), 0.0, 'rrt')
+    markers = markers_message(Report(Outcome.TIMEOUT, '', request, 1.0), STAMP).markers
+    assert [marker.action for marker in markers] == [Marker.DELETEALL]

@@ -1,0 +1,177 @@
+"""The pages in msg_docs/ and the nodes say the same: names, types, examples that work."""
+
+from collections.abc import Iterator
+from pathlib import Path
+import re
+import shlex
+from test.ros.harness import Client, node_process, NodeProcess, until
+from typing import Any
+
+from hnr_planner.core import ALGORITHMS
+from hnr_planner.ros.outcomes import Outcome
+from nav_msgs.srv import GetMap, GetPlan
+import pytest
+from std_srvs.srv import Trigger
+import yaml
+
+ROOT = Path(__file__).parents[2]
+PAGES = {path.stem: path.read_text() for path in sorted((ROOT / 'msg_docs').glob('*.md'))}
+INDEX = PAGES.pop('README')
+OFFICE = ROOT / 'config' / 'maps' / 'office.yaml'
+BY_ITSELF = {'/parameter_events', '/rosout'}
+"""Topics of every node, on the page of the parameters."""
+
+
+@pytest.fixture(scope='module')
+def source(tmp_path_factory: pytest.TempPathFactory) -> Iterator[NodeProcess]:
+    """Run the map source with the sample map."""
+    log = tmp_path_factory.mktemp('source') / 'log'
+    with node_process('map_node', log, yaml_filename=OFFICE) as process:
+        yield process
+
+
+@pytest.fixture(scope='module')
+def client(planner: NodeProcess, source: NodeProcess) -> Iterator[Client]:
+    """Return a client of both nodes."""
+    client = Client()
+    planner.wait_for('map received')
+    yield client
+    client.close()
+
+
+def rows(page: str) -> list[list[str]]:
+    """Return the cells of all table rows of a page."""
+    lines = [line.strip() for line in page.splitlines() if line.startswith('|')]
+    return [[cell.strip().strip('`') for cell in line.strip('|').split('|')] for line in lines]
+
+
+def documented(node: str) -> set[tuple[str, str, str]]:
+    """Return (kind, full name, type) of all that the pages say about a node."""
+    found = set()
+    for page in PAGES.values():
+        entry: dict[str, str] = {}
+        for cells in rows(page):
+            if cells[0] in ('kind', 'name', 'type'):
+                entry[cells[0]] = cells[1]
+            if cells[0] == 'type' and entry['kind'].endswith(node):
+                found.add((_kind(entry['kind']), _full(entry['name'], node), entry['type']))
+            if len(cells) == 3 and cells[0] in ('service', 'topic, published'):
+                found.add((_kind(cells[0]), _full(cells[1], node), cells[2]))
+    return found
+
+
+def _kind(words: str) -> str:
+    if words.startswith('service'):
+        return 'service'
+    return 'subscription' if 'subscribed' in words else 'publisher'
+
+
+def _full(name: str, node: str) -> str:
+    return '/' + name.replace('~', node).lstrip('/')
+
+
+def test_page_of_the_service_names_every_algorithm() -> None:
+    assert all(f'`{name}`' in PAGES['plan'] for name in ALGORITHMS)
+
+
+def in_graph(client: Client, node: str) -> set[tuple[str, str, str]]:
+    """Return (kind, full name, type) of all that a node has."""
+    ask = {
+        'publisher': client.node.get_publisher_names_and_types_by_node,
+        'subscription': client.node.get_subscriber_names_and_types_by_node,
+        'service': client.node.get_service_names_and_types_by_node,
+    }
+    return {
+        (kind, name, types[0]) for kind, names in ask.items() for name, types in names(node, '/')
+    }
+
+
+@pytest.mark.parametrize('node', ['hnr_planner', 'map_source'])
+def test_pages_and_graph_name_the_same(client: Client, node: str) -> None:
+    until(lambda: node in client.node.get_node_names(), f'{node} in the graph')
+    assert in_graph(client, node) == documented(node)
+
+
+def test_index_names_every_page() -> None:
+    linked = set(re.findall(r'\((\w+)\.md\)', INDEX))
+    assert linked == set(PAGES)
+    for target in re.findall(r'\]\(([^)#]+)\)', ''.join(PAGES.values())):
+        assert (ROOT / 'msg_docs' / target).exists(), target
+
+
+def test_index_names_every_type() -> None:
+    for link, _, _, types in rows(INDEX)[2:]:
+        page = link.split(']')[0].removeprefix('[')
+        for kind in re.findall(r'\w+/\w+/\w+', types):
+            assert kind in PAGES[page], (page, kind)
+
+
+@pytest.mark.parametrize('page', PAGES)
+def test_every_page_has_an_example(page: str) -> None:
+    (example,) = re.findall(r'## Try it\n.*?```bash\n(.*?)```', PAGES[page], re.DOTALL)
+    assert all(line.startswith('ros2 ') for line in example.splitlines())
+
+
+def examples(command: str) -> list[list[str]]:
+    """Return the words of every example line that starts with a command."""
+    lines = re.findall(rf'^{command} (.*)$', '\n'.join(PAGES.values()), re.MULTILINE)
+    return [shlex.split(line) for line in lines]
+
+
+TYPES = {
+    'nav_msgs/srv/GetPlan': GetPlan,
+    'nav_msgs/srv/GetMap': GetMap,
+    'std_srvs/srv/Trigger': Trigger,
+}
+
+
+def fill(message: Any, values: dict[str, Any]) -> Any:
+    """Set fields of a message from what the example says, as the command line does."""
+    for name, value in values.items():
+        if isinstance(value, dict):
+            fill(getattr(message, name), value)
+        else:
+            setattr(message, name, value)
+    return message
+
+
+def test_service_examples_work(client: Client) -> None:
+    called = set()
+    for name, kind, *fields in examples('ros2 service call'):
+        service = TYPES[kind]
+        request = fill(service.Request(), yaml.safe_load(fields[0]) if fields else {})
+        answer = client.call(service, name, request)
+        called.add(name)
+        if service is GetPlan:
+            assert len(answer.plan.poses) > 10
+            assert client.outcome_of(answer.plan)[0] is Outcome.SOLVED
+        elif service is GetMap:
+            assert answer.map.info.width > 100
+        else:
+            assert answer.success
+    assert called == {'/map_source/map', '/hnr_planner/cancel'} | {
+        f'/hnr_planner/plan{suffix}' for suffix in ('', '_rrt', '_hit_and_run')
+    }
+
+
+def test_echo_examples_name_real_topics(client: Client) -> None:
+    topics = {name for _, name, _ in documented('hnr_planner') if name not in BY_ITSELF}
+    echoed = {words[0] for words in examples('ros2 topic echo')}
+    assert echoed < topics
+    assert len(echoed) == 5
+
+
+def test_parameter_examples_work(client: Client) -> None:
+    for node, name, value in examples('ros2 param set'):
+        (answer,) = client.set_parameters(node, **{name: yaml.safe_load(value)})
+        assert answer.successful, answer.reason
+
+
+def test_page_of_outcomes_names_them_all(client: Client) -> None:
+    """Names and values, on the page and in a real message."""
+    page = PAGES['outcome']
+    assert [cells[0] for cells in rows(page) if cells[0].isupper()] == [o.name for o in Outcome]
+    until(lambda: client.outcomes, 'an outcome')
+    values = {item.key for item in client.outcomes[-1].status[0].values}
+    named = {name for cells in rows(page) for name in re.findall(r'[a-z_]+', cells[0])}
+    assert values <= named

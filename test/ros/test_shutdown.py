@@ -1,0 +1,68 @@
+"""SIGINT and SIGTERM, whenever they come: exit code 0, at once, and an orderly log."""
+
+from pathlib import Path
+import signal
+from signal import SIGINT, SIGTERM
+from test.ros.harness import Client, grid_message, maze, node_process, NodeProcess, pose, result_of
+import time
+
+from hnr_planner.ros.outcomes import Outcome
+import pytest
+
+SIGNALS = [(SIGINT,), (SIGTERM,), (SIGINT, SIGINT), (SIGINT, SIGTERM)]
+AT_ONCE = 2.0
+
+
+def assert_clean_end(process: NodeProcess, *signals: signal.Signals) -> None:
+    """Send signals and hold the process to a clean and prompt end."""
+    began = time.monotonic()
+    assert process.end(*signals) == 0, process.log
+    assert time.monotonic() - began < AT_ONCE
+    for word in ('Traceback', 'Error', 'Exception', 'exception', 'ignored'):
+        assert word not in process.log, process.log
+
+
+@pytest.mark.parametrize('signals', SIGNALS[:2])
+def test_idle_node_ends_cleanly(tmp_path: Path, signals: tuple[signal.Signals, ...]) -> None:
+    with node_process('planner_node', tmp_path / 'log') as process:
+        assert_clean_end(process, *signals)
+
+
+@pytest.mark.parametrize('signals', SIGNALS)
+def test_searching_node_answers_and_ends_cleanly(
+    tmp_path: Path, signals: tuple[signal.Signals, ...]
+) -> None:
+    with node_process('planner_node', tmp_path / 'log', time_limit=60.0) as process:
+        client = Client()
+        try:
+            client.publish_map(grid_message(maze()))
+            process.wait_for('map received')
+            start, goal = pose(0.025, 0.025), pose(20, 20)
+            # Discovery is over when everything about a first request has arrived.
+            client.outcome_of(client.plan(start, start))
+            futures = [client.send_plan(start, goal) for _ in range(3)]
+            time.sleep(0.5)
+            assert_clean_end(process, *signals)
+            for future in futures:
+                path = result_of(future).plan
+                assert path.poses == []
+                assert client.outcome_of(path)[0] is Outcome.CANCELLED
+        finally:
+            client.close()
+
+
+@pytest.mark.parametrize('signals', SIGNALS[:2])
+def test_node_that_still_prepares_ends_cleanly(
+    tmp_path: Path, signals: tuple[signal.Signals, ...]
+) -> None:
+    with node_process('planner_node', tmp_path / 'log', ready='preparing') as process:
+        assert_clean_end(process, *signals)
+        assert 'ready' not in process.log
+
+
+def test_parameter_that_cannot_be_ends_the_start_with_one_line(tmp_path: Path) -> None:
+    with node_process('planner_node', tmp_path / 'log', ready='[FATAL]', time_limit=-1.0) as bad:
+        assert bad.popen.wait(5.0) == 1
+        (line,) = (line for line in bad.log.splitlines() if '[FATAL]' in line)
+        assert 'time_limit' in line and '-1' in line
+        assert 'Traceback' not in bad.log
