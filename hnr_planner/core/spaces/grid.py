@@ -3,11 +3,12 @@
 from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, Literal
+from typing import Literal
 
 from hnr_planner.core.checks import check_point, check_points, check_real, Floats
 from hnr_planner.core.errors import RequestError, SpaceError
 from hnr_planner.core.spaces.clearance import path_clearance, point_clearance
+from hnr_planner.core.spaces.grid_cells import Bools, check_cells, read_occupancy
 from hnr_planner.core.spaces.grid_fields import components, free_distance, inflate
 from hnr_planner.core.spaces.grid_frame import GridFrame
 from hnr_planner.core.spaces.grid_traversal import GridData
@@ -15,8 +16,6 @@ from hnr_planner.core.spaces.primitives import components as components_of
 from hnr_planner.core.spaces.space import Space
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-
-Bools = NDArray[np.bool_]
 
 #: Cells looked at, about, for a mean over all of a map.
 TYPICAL_CELLS = 10_000
@@ -85,20 +84,7 @@ class GridSpace(Space):
             When one of the arguments describes no grid; the message names it.
 
         """
-        values = _check_cells(data)
-        if not np.issubdtype(values.dtype, np.integer):
-            raise SpaceError(f'data must be whole numbers, got an array of {values.dtype}')
-        if not isinstance(occupied_threshold, (int, np.integer)):
-            raise SpaceError(
-                f'occupied_threshold must be a whole number, got {occupied_threshold!r}'
-            )
-        if not 1 <= occupied_threshold <= 100:
-            raise SpaceError(f'occupied_threshold must be in 1..100, got {occupied_threshold!r}')
-        if unknown not in ('blocked', 'free'):
-            raise SpaceError(f"unknown must be 'blocked' or 'free', got {unknown!r}")
-        out_of_range = (values < 0) | (values > 100)
-        occupied = (values >= occupied_threshold) & ~out_of_range
-        closed = out_of_range if unknown == 'blocked' else np.zeros_like(occupied)
+        occupied, closed = read_occupancy(data, occupied_threshold, unknown)
         return cls._build(occupied, closed, resolution, origin, robot_radius)
 
     @classmethod
@@ -111,7 +97,7 @@ class GridSpace(Space):
         robot_radius: float = 0.0,
     ) -> 'GridSpace':
         """Build the space whose occupied cells are ``blocked`` (rows, cols) bool; see above."""
-        occupied = _check_cells(blocked).astype(bool)
+        occupied = check_cells(blocked).astype(bool)
         return cls._build(occupied, np.zeros_like(occupied), resolution, origin, robot_radius)
 
     @classmethod
@@ -301,10 +287,3 @@ class GridSpace(Space):
             raise RequestError(f'path must be at least one finite point (m, 2), got {path!r}')
         cells = self.frame.to_cells(points)
         return float(path_clearance(self._wall_distance, cells)) * self.scale
-
-
-def _check_cells(cells: ArrayLike) -> NDArray[Any]:
-    array = np.asarray(cells)
-    if array.ndim != 2 or array.size == 0:
-        raise SpaceError(f'a grid needs rows and columns, got an array of shape {array.shape}')
-    return array

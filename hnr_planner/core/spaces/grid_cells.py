@@ -1,0 +1,43 @@
+"""What the values of an occupancy map say about its cells."""
+
+from typing import Any
+
+from hnr_planner.core.errors import SpaceError
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+Bools = NDArray[np.bool_]
+
+
+def check_cells(cells: ArrayLike) -> NDArray[Any]:
+    """Return ``cells`` (rows, cols) as an array that is not empty, or raise SpaceError."""
+    array = np.asarray(cells)
+    if array.ndim != 2 or array.size == 0:
+        raise SpaceError(f'a grid needs rows and columns, got an array of shape {array.shape}')
+    return array
+
+
+def read_occupancy(data: ArrayLike, occupied_threshold: int, unknown: str) -> tuple[Bools, Bools]:
+    """
+    Return the cells (rows, cols) that are occupied, and those that are closed for being unknown.
+
+    Values outside 0..100 are unknown, whatever the threshold.
+
+    Raises
+    ------
+    SpaceError
+        When the data is no grid of whole numbers, or a setting is out of its range.
+
+    """
+    values = check_cells(data)
+    if not np.issubdtype(values.dtype, np.integer):
+        raise SpaceError(f'data must be whole numbers, got an array of {values.dtype}')
+    if not isinstance(occupied_threshold, (int, np.integer)):
+        raise SpaceError(f'occupied_threshold must be a whole number, got {occupied_threshold!r}')
+    if not 1 <= occupied_threshold <= 100:
+        raise SpaceError(f'occupied_threshold must be in 1..100, got {occupied_threshold!r}')
+    if unknown not in ('blocked', 'free'):
+        raise SpaceError(f"unknown must be 'blocked' or 'free', got {unknown!r}")
+    is_unknown = (values < 0) | (values > 100)
+    occupied = (values >= occupied_threshold) & ~is_unknown
+    return occupied, is_unknown if unknown == 'blocked' else np.zeros_like(occupied)
