@@ -33,14 +33,13 @@ class HitAndRunSearch:
 
     problem: Problem
     rng: np.random.Generator
-    solved: bool = field(init=False)
+    solved: bool = field(init=False, default=False)
     redraws: int = field(init=False, default=0)
     _chain: Floats = field(init=False)
     _length: int = field(init=False, default=1)
 
     def __post_init__(self) -> None:
         self._chain = self.problem.start[np.newaxis].copy()
-        self.solved = bool(reaches_goal(self.problem, self.problem.start))
 
     @property
     def iterations(self) -> int:

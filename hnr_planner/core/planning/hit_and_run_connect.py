@@ -84,7 +84,7 @@ class HitAndRunConnectSearch:
     iterations: int = field(init=False, default=0)
     _redraws: int = field(init=False, default=0)
     _trees: Trees = field(init=False)
-    _ends: tuple[int, int] = field(init=False)
+    _ends: tuple[int, int] = field(init=False, default=(NONE, NONE))
 
     def __post_init__(self) -> None:
         problem, dim = self.problem, len(self.problem.start)
@@ -95,7 +95,7 @@ class HitAndRunConnectSearch:
             sizes=np.zeros(2, dtype=np.int64),
             frontier=empty_frontier(problem.lower, problem.upper, problem.clearance),
         )
-        self._ends = _plant(problem, self._trees)
+        _plant(problem, self._trees)
 
     @property
     def solved(self) -> bool:
@@ -149,17 +149,12 @@ class HitAndRunConnectSearch:
 
 @kernel
 def _plant(problem, trees):
-    """Plant a root at each end that is free; return the ends of a path that needs no search."""
+    """Plant a root at each end that is free."""
     trees.vertices[0] = problem.start
     _add(trees, 0, NONE)
     if contains(problem.space, problem.goal):
         trees.vertices[1] = problem.goal
         _add(trees, 1, NONE)
-        if sees(problem.space, problem.start, problem.goal):
-            return 0, 1
-    if problem.goal_radius > 0.0 and reaches_goal(problem, problem.start):
-        return 0, NONE
-    return NONE, NONE
 
 
 @kernel

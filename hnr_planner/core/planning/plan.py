@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 
 from hnr_planner.core.checks import check_count, check_number, Floats
 from hnr_planner.core.planning.limits import Event, Limits
-from hnr_planner.core.planning.request import check_request, refusal, Request
+from hnr_planner.core.planning.request import check_request, Request, without_search
 from hnr_planner.core.planning.result import (
     FirstSolution,
     path_length,
@@ -95,9 +95,9 @@ def plan(
     _compile(request)
 
     began = time.perf_counter()
-    refused = refusal(request)
-    if refused is not None:
-        return _without_search(request, *refused, began)
+    known = without_search(request)
+    if known is not None:
+        return _answer_without_search(request, *known, began)
     limits = Limits(began + seconds, transitions, cancel)
     best = _attempt(request, 0, limits, began)
     first, iterations = best.first, best.search.iterations
@@ -124,24 +124,30 @@ def plan(
     )
 
 
-def _without_search(
+def _answer_without_search(
     request: Request, status: PlannerStatus, message: str, began: float
 ) -> PlanResult:
-    """Answer a request that needs no search to fail."""
+    """Answer a request that needs no search to fail or to succeed."""
+    path, length, samples, first = np.empty((0, len(request.start))), math.inf, 0, None
+    if status is PlannerStatus.SOLVED:
+        end = request.goal if request.goal_radius == 0.0 else request.start
+        path, samples = np.stack([request.start, end]), 1
+        length = path_length(path)
+        first = FirstSolution(time.perf_counter() - began, length)
     return PlanResult(
         status=status,
         message=message,
         planner=request.planner.name,
-        path=np.empty((0, request.space.dim)),
-        length=math.inf,
-        samples=np.empty((0, request.space.dim)),
-        parents=np.empty(0, dtype=np.int64),
+        path=path,
+        length=length,
+        samples=path[:samples].copy(),
+        parents=np.full(samples, -1),
         iterations=0,
         counts={},
         elapsed=time.perf_counter() - began,
         seed=request.seed,
         cut_by_time=False,
-        first_solution=None,
+        first_solution=first,
     )
 
 
@@ -221,11 +227,9 @@ def _compile(request: Request) -> None:
     space, kinds = request.space, (type(request.space.data), type(request.planner))
     if kinds in _compiled:
         return
-    # A corner of the bounds is never free, so no search is solved before it has begun.
-    unsolved = request.problem._replace(goal=request.problem.lower, goal_radius=0.0)
-    search = request.planner.start(unsolved, np.random.default_rng(0), space.scale)
+    search = request.planner.start(request.problem, np.random.default_rng(0), space.scale)
     search.advance(0)
-    refusal(request)
+    without_search(request)
     ends = np.stack([request.start, request.goal])
     compile_shorten(space, ends)
     space.first_blocked_segment(ends)

@@ -1,4 +1,4 @@
-"""A planning request at the door: clean numbers, the problem in kernel form, and refusals."""
+"""A planning request at the door: clean numbers, and what needs no search to be answered."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -7,7 +7,7 @@ from hnr_planner.core.checks import check_number, check_point, check_seed, Float
 from hnr_planner.core.kernels import kernel
 from hnr_planner.core.planning.algorithms import make_planner
 from hnr_planner.core.planning.result import PlannerStatus
-from hnr_planner.core.planning.search import Planner, Problem
+from hnr_planner.core.planning.search import Planner, Problem, reaches_goal
 from hnr_planner.core.spaces.primitives import component
 from hnr_planner.core.spaces.space import Space
 import numpy as np
@@ -83,13 +83,19 @@ def check_request(
     )
 
 
-def refusal(request: Request) -> tuple[PlannerStatus, str] | None:
-    """Say where no search can help: an end that is not free, or no way between them."""
+def without_search(request: Request) -> tuple[PlannerStatus, str] | None:
+    """
+    Say how a request ends that needs no search, and why; None for one that does.
+
+    An end that is not free, no way between the two, or a start that reaches the goal as it is.
+    """
     space, start, goal = request.space, request.start, request.goal
-    start_part, goal_part = _parts(request.problem)
+    start_part, goal_part, reached = _look(request.problem)
     if start_part == 0:
         message = f'start {_words(start)} is {space.why_not_free(start)}'
         return PlannerStatus.INVALID_START, message
+    if reached:
+        return PlannerStatus.SOLVED, f'start {_words(start)} reaches the goal directly'
     if start_part == goal_part:
         return None
     if goal_part == 0 and request.goal_radius == 0.0:
@@ -105,9 +111,11 @@ def refusal(request: Request) -> tuple[PlannerStatus, str] | None:
 
 
 @kernel
-def _parts(problem):
-    """Return the parts of the space that hold start and goal; 0 where one is not free."""
-    return component(problem.space, problem.start), component(problem.space, problem.goal)
+def _look(problem):
+    """Parts of the space that hold start and goal, 0 for none; whether one reaches the other."""
+    start_part = component(problem.space, problem.start)
+    goal_part = component(problem.space, problem.goal)
+    return start_part, goal_part, start_part != 0 and reaches_goal(problem, problem.start)
 
 
 def _words(point: Floats) -> str:

@@ -55,7 +55,7 @@ class RRTSearch:
     problem: Problem
     rng: np.random.Generator
     max_step: float
-    solved: bool = field(init=False)
+    solved: bool = field(init=False, default=False)
     iterations: int = field(init=False, default=0)
     rejected: int = field(init=False, default=0)
     _n_vertices: int = field(init=False, default=1)
@@ -68,7 +68,6 @@ class RRTSearch:
         self._parents = np.array([-1])
         self._tree = empty_box_tree(self.problem.lower, self.problem.upper, 1)
         insert(self._tree, self._vertices, 0)
-        self.solved = bool(reaches_goal(self.problem, self.problem.start))
 
     @property
     def samples(self) -> Floats:

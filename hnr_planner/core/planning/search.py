@@ -3,8 +3,8 @@ What a planner is: a value that starts searches, which advance by counts and kno
 
 A planner is a frozen dataclass whose fields are its settings. Its ``start`` gives a search, whose
 ``advance(n)`` handles at most ``n`` further transitions. Batches may be of any size: the same
-problem and generator give the same samples and the same path to the last bit. All arrays here are
-in the kernel frame of the space.
+problem and generator give the same samples and the same path to the last bit. A start that reaches
+the goal as it is needs no search, and is given none. All arrays are in the space's kernel frame.
 """
 
 from typing import Any, NamedTuple, Protocol
@@ -111,10 +111,7 @@ def branch(samples: Floats, parents: NDArray[np.int64], k: int) -> Floats:
 
 def to_goal(problem: Problem, points: Floats) -> Floats:
     """Return ``points`` (m, dim), whose last one reaches the goal, with an exact goal added."""
-    if problem.goal_radius > 0.0 and len(points) > 1:
-        return points
-    end = problem.goal if problem.goal_radius == 0.0 else points[-1]
-    return np.vstack([points, end])
+    return points if problem.goal_radius > 0.0 else np.vstack([points, problem.goal])
 
 
 def with_room(array: NDArray[Any], rows: int) -> NDArray[Any]:
