@@ -25,6 +25,8 @@ help:
 	@echo 'make demo KEEP=1           leave the nodes running, to try calls by hand'
 	@echo 'make test                  run the tests (ARGS="-k name -x" goes to pytest)'
 	@echo 'make check                 format, lint, types, spelling, then the tests'
+	@echo 'make bench                 side by side with OMPL and grid search, a quarter of an hour'
+	@echo 'make bench QUICK=1         the same in two minutes, for a look'
 	@echo 'make format                put the sources into shape'
 	@echo 'make clean                 remove .venv and all that was built'
 	@echo
@@ -79,9 +81,13 @@ lint: install
 	$(VENV) -m ruff format --check .
 	$(VENV) -m ruff check .
 	$(VENV) -m flake8 .
-	$(VENV) -m pydocstyle hnr_planner launch test setup.py
+	$(VENV) -m pydocstyle benchmarks hnr_planner launch test setup.py
 	$(VENV) -m mypy
 	$(VENV) -m codespell_lib .
+
+.PHONY: bench
+bench: install
+	$(VENV) -m benchmarks $(if $(QUICK),--quick)
 
 .PHONY: format
 format: install

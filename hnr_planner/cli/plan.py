@@ -29,6 +29,7 @@ ALGORITHM_NAMES = (
     'hit_and_run',
     'rrt',
     'hit_and_run_connect',
+    'rrt_connect',
 )  # those of the core, here so that --help is fast
 NO_PATH = 1
 EPILOG = """\

@@ -8,14 +8,14 @@ from hnr_planner.core.errors import RequestError
 from hnr_planner.core.planning.hit_and_run import HitAndRun
 from hnr_planner.core.planning.hit_and_run_connect import HitAndRunConnect
 from hnr_planner.core.planning.rrt import RRT
+from hnr_planner.core.planning.rrt_connect import RRTConnect
 from hnr_planner.core.planning.search import Planner
 
 #: What ``auto`` stands for.
 BEST = 'hit_and_run_connect'
 
-_PLANNERS: dict[str, type[HitAndRun] | type[RRT] | type[HitAndRunConnect]] = {
-    planner.name: planner for planner in (HitAndRun, RRT, HitAndRunConnect)
-}
+_KINDS = (HitAndRun, RRT, HitAndRunConnect, RRTConnect)
+_PLANNERS: dict[str, type[Any]] = {kind.name: kind for kind in _KINDS}
 
 #: Names that ``plan`` takes.
 ALGORITHMS = ('auto', *_PLANNERS)

@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 from hnr_planner.core.checks import Floats
 from hnr_planner.core.kernels import kernel
+from hnr_planner.core.planning.search import NONE
 import numpy as np
 from numpy.typing import NDArray
 
@@ -22,7 +23,6 @@ SIDE = 1.75
 USES_MAX = 63
 #: Part of the choices that any bin may get, so that no part of a tree is left for ever.
 ANY = 0.07
-NONE = -1
 
 
 class Frontier(NamedTuple):

@@ -18,9 +18,8 @@ from hnr_planner.core.planning.frontier import (
     choose_vertex,
     empty_frontier,
     Frontier,
-    NONE,
 )
-from hnr_planner.core.planning.search import branch, Problem, reaches_goal, to_goal, with_room
+from hnr_planner.core.planning.search import NONE, Problem, reaches_goal, through, with_room
 from hnr_planner.core.sampling.walks import draw_between, draw_direction
 from hnr_planner.core.spaces.primitives import contains, leave, sees
 import numpy as np
@@ -120,9 +119,7 @@ class HitAndRunConnectSearch:
     @property
     def path(self) -> Floats:
         """Return the branch of each tree that leads to where they met."""
-        samples, parents = self.samples, self.parents
-        ahead, back = (branch(samples, parents, end) for end in self._ends)
-        return np.concatenate([ahead, back[::-1]]) if len(back) else to_goal(self.problem, ahead)
+        return through(self.problem, self.samples, self.parents, self._ends)
 
     @property
     def counts(self) -> dict[str, int]:

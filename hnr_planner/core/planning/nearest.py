@@ -11,13 +11,13 @@ from typing import NamedTuple
 
 from hnr_planner.core.checks import Floats
 from hnr_planner.core.kernels import kernel
+from hnr_planner.core.planning.search import NONE
 import numpy as np
 from numpy.typing import NDArray
 
 LEAF_SIZE = 8
 #: Points nearer to each other than a box of this depth stay in one leaf.
 DEPTH_MAX = 100
-NONE = -1
 
 
 class BoxTree(NamedTuple):

@@ -11,11 +11,11 @@ import time
 from typing import Any, NamedTuple
 
 from hnr_planner.core.checks import check_count, check_number, Floats
+from hnr_planner.core.planning.lengths import path_length
 from hnr_planner.core.planning.limits import Event, Limits
 from hnr_planner.core.planning.request import check_request, Request, without_search
 from hnr_planner.core.planning.result import (
     FirstSolution,
-    path_length,
     PlannerStatus,
     PlanResult,
 )

@@ -2,11 +2,9 @@
 
 from dataclasses import dataclass
 from enum import Enum
-import math
 from typing import NamedTuple
 
 from hnr_planner.core.checks import Floats
-from hnr_planner.core.kernels import kernel
 import numpy as np
 from numpy.typing import NDArray
 
@@ -82,15 +80,3 @@ class PlanResult:
     def paths(self) -> tuple[Floats, ...]:
         """All paths found, the shortest first."""
         return (self.path,) if len(self.path) else ()
-
-
-@kernel
-def path_length(path):
-    """Length of a path (m, dim)."""
-    total = 0.0
-    for k in range(1, len(path)):
-        squared = 0.0
-        for i in range(path.shape[1]):
-            squared += (path[k, i] - path[k - 1, i]) ** 2
-        total += math.sqrt(squared)
-    return total

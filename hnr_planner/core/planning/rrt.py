@@ -12,6 +12,7 @@ from typing import ClassVar
 from hnr_planner.core.checks import check_number, Floats
 from hnr_planner.core.errors import RequestError
 from hnr_planner.core.kernels import kernel
+from hnr_planner.core.planning.lengths import norm
 from hnr_planner.core.planning.nearest import BoxTree, empty_box_tree, grown, insert, nearest
 from hnr_planner.core.planning.search import branch, Problem, reaches_goal, to_goal, with_room
 from hnr_planner.core.spaces.primitives import contains, contains_around, leave
@@ -122,13 +123,13 @@ def _grow(problem, max_step, rng, vertices, parents, n_vertices, tree, n_iterati
     for _ in range(PROPOSALS_PER_ITERATION * n_iterations):
         if iterations == n_iterations:
             break
-        _draw_in_box(problem.lower, problem.upper, rng, proposal)
+        draw_in_box(problem.lower, problem.upper, rng, proposal)
         if not contains(problem.space, proposal):
             rejected += 1
             continue
         iterations += 1
         parent = nearest(tree, vertices, proposal)
-        if _extend(problem, max_step, vertices[parent], proposal, vertices[n_vertices]):
+        if extend(problem, max_step, vertices[parent], proposal, vertices[n_vertices]):
             parents[n_vertices] = parent
             insert(tree, vertices, n_vertices)
             n_vertices += 1
@@ -138,19 +139,17 @@ def _grow(problem, max_step, rng, vertices, parents, n_vertices, tree, n_iterati
 
 
 @kernel
-def _draw_in_box(lower, upper, rng, x):
+def draw_in_box(lower, upper, rng, x):
+    """Draw ``x`` uniformly from a box."""
     for i in range(len(x)):
         x[i] = lower[i] + (upper[i] - lower[i]) * rng.random()
 
 
 @kernel
-def _extend(problem, max_step, vertex, proposal, end):
+def extend(problem, max_step, vertex, proposal, end):
     """Write the end of the extension; False when it is shorter than the margin."""
     u = proposal - vertex
-    length = 0.0
-    for component in u:
-        length += component * component
-    length = math.sqrt(length)
+    length = norm(u)
     if length <= problem.margin:
         return False
     reach = leave(problem.space, vertex, u, 0.0, 1.0)

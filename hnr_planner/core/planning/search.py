@@ -15,6 +15,9 @@ from hnr_planner.core.spaces.primitives import sees
 import numpy as np
 from numpy.typing import NDArray
 
+#: No vertex: the parent of a root, or a tree that is not there.
+NONE = -1
+
 
 class Problem(NamedTuple):
     """
@@ -107,6 +110,19 @@ def branch(samples: Floats, parents: NDArray[np.int64], k: int) -> Floats:
         rows.append(k)
         k = int(parents[k])
     return samples[rows[::-1]]
+
+
+def through(
+    problem: Problem, samples: Floats, parents: NDArray[np.int64], ends: tuple[int, int]
+) -> Floats:
+    """
+    Return the path (m, dim) through where two trees see each other.
+
+    ``ends`` are the vertices that do, that of the start's tree first. With NONE for the second
+    there is one tree only, and the first vertex reaches the goal.
+    """
+    ahead, back = (branch(samples, parents, end) for end in ends)
+    return np.concatenate([ahead, back[::-1]]) if len(back) else to_goal(problem, ahead)
 
 
 def to_goal(problem: Problem, points: Floats) -> Floats:

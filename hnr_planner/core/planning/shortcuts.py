@@ -6,9 +6,8 @@ are joined; each vertex is pulled towards the line between its neighbours until 
 way, and what corner is left there is cut off, so that the path comes to lie taut around obstacles.
 """
 
-import math
-
 from hnr_planner.core.kernels import kernel
+from hnr_planner.core.planning.lengths import norm
 from hnr_planner.core.spaces.primitives import sees
 import numpy as np
 
@@ -78,7 +77,7 @@ def _pull(space, a, x, b, margin):
             free = middle
         else:
             blocked = middle
-    length = _distance(x, x + way)
+    length = norm(way)
     if free * length > margin:
         x += (free - margin / length) * way
 
@@ -94,10 +93,10 @@ def _cut(space, a, x, b, margin):
         else:
             blocked = middle
     corner = np.empty((2, len(x)))
-    around = _distance(a, x) + _distance(x, b)
+    around = norm(x - a) + norm(b - x)
     free = max(free - margin / around, 0.0)
     corner[0], corner[1] = x + free * (a - x), x + free * (b - x)
-    gain = free * around - _distance(corner[0], corner[1])
+    gain = free * around - norm(corner[1] - corner[0])
     if gain > LEAST_CUT * around:
         return corner
     corner[0] = x
@@ -124,14 +123,6 @@ def _nearest_on_segment(x, a, b):
 
 
 @kernel
-def _distance(a, b):
-    squared = 0.0
-    for i in range(len(a)):
-        squared += (b[i] - a[i]) ** 2
-    return math.sqrt(squared)
-
-
-@kernel
 def _join_two(space, points, rng):
     """Try to join two random points of the path, uniform along its length, directly."""
     along = _lengths_along(points)
@@ -150,7 +141,7 @@ def _lengths_along(points):
     """Length of the path up to each of its vertices (m,)."""
     along = np.zeros(len(points))
     for k in range(1, len(points)):
-        along[k] = along[k - 1] + _distance(points[k - 1], points[k])
+        along[k] = along[k - 1] + norm(points[k] - points[k - 1])
     return along
 
 

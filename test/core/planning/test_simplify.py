@@ -5,7 +5,7 @@ from test.brute_force import path_collisions
 from test.laws import maps
 
 from hnr_planner.core import GridSpace, plan, RequestError, simplify
-from hnr_planner.core.planning.result import path_length
+from hnr_planner.core.planning.lengths import path_length
 import numpy as np
 from numpy.typing import NDArray
 import pytest
