@@ -16,7 +16,7 @@ def check_points(name: str, points: ArrayLike, dim: int) -> Floats:
     """Return ``points`` (k, dim) or (dim,) as a fresh float array, or raise RequestError."""
     try:
         array = np.array(points, dtype=np.float64)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise RequestError(f'{name} must be numbers, got {points!r}') from None
     if array.ndim not in (1, 2) or array.shape[-1] != dim:
         raise RequestError(f'{name} must have shape (k, {dim}) or ({dim},), got {array.shape}')
@@ -45,7 +45,7 @@ def check_real(name: str, value: Any, error: type[HnrError] = RequestError) -> f
     """Return ``value`` as a float, whichever, or raise ``error``."""
     try:
         return float(value)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise error(f'{name} must be a number, got {value!r}') from None
 
 

@@ -11,11 +11,13 @@ answered from machine code of the past. So the cache lies in a folder named by t
 of the core's sources, and every edit starts a new one.
 """
 
+import atexit
 from collections.abc import Callable, Iterator
 from functools import cache
 import hashlib
 import os
 from pathlib import Path
+import shutil
 import tempfile
 import types
 from typing import Any
@@ -53,6 +55,7 @@ def cache_folder() -> Path:
             return folder
     except OSError as error:
         temporary = Path(tempfile.mkdtemp(prefix='hnr_planner_'))
+        atexit.register(shutil.rmtree, temporary, ignore_errors=True)
         warnings.warn(
             f'compiled kernels cannot be kept in {folder} ({error}); using {temporary} instead, '
             f'so every start compiles again: set NUMBA_CACHE_DIR to a folder that can be written',

@@ -91,7 +91,7 @@ def test_without_a_folder_to_write_kernels_are_kept_for_this_run_with_a_warning(
 
 GRID = GridSpace.from_blocked(maps.rooms(40, 40, 10, seed=1), 0.05)
 LOWER, UPPER = GRID.kernel_bounds
-PROBLEM = Problem(GRID.data, LOWER, UPPER, LOWER + 1.5, UPPER - 1.5, 0.0, GRID.margin, 5.0)
+PROBLEM = Problem(GRID.data, LOWER, UPPER, LOWER + 1.5, UPPER - 1.5, 0.0, GRID.margin, 5.0, 1.0)
 
 
 def both(kernel, *arguments):

@@ -32,6 +32,8 @@ def make_planner(algorithm: str | Planner, settings: dict[str, Any]) -> Planner:
 
     """
     if not isinstance(algorithm, str):
+        if isinstance(algorithm, type) or not callable(getattr(algorithm, 'start', None)):
+            raise RequestError(f'algorithm must be a name or a planner value, got {algorithm!r}')
         if settings:
             raise RequestError(f'settings {sorted(settings)} go with the name of a planner only')
         return algorithm

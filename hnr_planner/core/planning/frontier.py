@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 #: Most bins along the longer side of the bounds, so that a search on a large map starts at once.
 BINS_MAX = 128
-#: Side of a bin in units of the typical clearance; the least for clearances of nothing.
+#: Side of a bin in units of the typical clearance; measured on building maps and spirals.
 SIDE = 1.75
 #: Choices counted apart: a bin chosen more often stays with those chosen this often.
 USES_MAX = 63

@@ -22,7 +22,7 @@ class HitAndRun:
 
     name: ClassVar[str] = 'hit_and_run'
 
-    def start(self, problem: Problem, rng: np.random.Generator, scale: float) -> 'HitAndRunSearch':
+    def start(self, problem: Problem, rng: np.random.Generator) -> 'HitAndRunSearch':
         """Start a chain at the problem's start."""
         return HitAndRunSearch(problem, rng)
 

@@ -21,7 +21,7 @@ from hnr_planner.core.planning.frontier import (
 )
 from hnr_planner.core.planning.search import NONE, Problem, reaches_goal, through, with_room
 from hnr_planner.core.sampling.walks import draw_between, draw_direction
-from hnr_planner.core.spaces.primitives import contains, leave, sees
+from hnr_planner.core.spaces.primitives import component, leave, sees
 import numpy as np
 from numpy.typing import NDArray
 
@@ -63,9 +63,7 @@ class HitAndRunConnect:
 
     name: ClassVar[str] = 'hit_and_run_connect'
 
-    def start(
-        self, problem: Problem, rng: np.random.Generator, scale: float
-    ) -> 'HitAndRunConnectSearch':
+    def start(self, problem: Problem, rng: np.random.Generator) -> 'HitAndRunConnectSearch':
         """Start a tree at each end."""
         return HitAndRunConnectSearch(problem, rng)
 
@@ -75,7 +73,7 @@ class HitAndRunConnectSearch:
     """
     Two trees under way; a transition is one step of one of them, in turn.
 
-    A goal region whose centre is not free has no second tree: the first has to find into it.
+    A goal region whose centre cannot be reached has no second tree: the first has to find into it.
     """
 
     problem: Problem
@@ -146,10 +144,10 @@ class HitAndRunConnectSearch:
 
 @kernel
 def _plant(problem, trees):
-    """Plant a root at each end that is free."""
+    """Plant a root at the start, and one at a goal that it can reach."""
     trees.vertices[0] = problem.start
     _add(trees, 0, NONE)
-    if contains(problem.space, problem.goal):
+    if component(problem.space, problem.goal) == component(problem.space, problem.start):
         trees.vertices[1] = problem.goal
         _add(trees, 1, NONE)
 

@@ -1,8 +1,9 @@
 """What ends a search that does not end by itself: the clock, a count, or a person."""
 
+from dataclasses import dataclass, field
 import math
 import time
-from typing import NamedTuple, Protocol
+from typing import Protocol
 
 from hnr_planner.core.planning.result import PlannerStatus
 from hnr_planner.core.planning.search import Search
@@ -19,9 +20,10 @@ class Event(Protocol):
         """Say whether it was set."""
 
 
-class Limits(NamedTuple):
+@dataclass
+class Limits:
     """
-    Limits on the work for one request.
+    Limits on the work for one request, and whether one of them cut it short.
 
     Attributes
     ----------
@@ -31,20 +33,25 @@ class Limits(NamedTuple):
         Transitions allowed for one search; may be inf.
     cancel : Event or None
         Ends everything once it is set.
+    cut : bool
+        Whether the clock or a cancellation has ended something.
 
     """
 
     deadline: float
     max_iterations: float = math.inf
     cancel: Event | None = None
+    cut: bool = field(init=False, default=False)
 
     def stop(self) -> PlannerStatus | None:
         """Say why work has to stop now; None while it may go on."""
+        stopped = None
         if self.cancel is not None and self.cancel.is_set():
-            return PlannerStatus.CANCELLED
-        if time.perf_counter() >= self.deadline:
-            return PlannerStatus.TIMEOUT
-        return None
+            stopped = PlannerStatus.CANCELLED
+        elif time.perf_counter() >= self.deadline:
+            stopped = PlannerStatus.TIMEOUT
+        self.cut = self.cut or stopped is not None
+        return stopped
 
     def run(self, search: Search) -> PlannerStatus:
         """

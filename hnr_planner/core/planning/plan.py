@@ -5,6 +5,7 @@ The planners search and count; ``plan`` alone checks the request, owns the clock
 cancellation, shortens the path and says in words how it ended.
 """
 
+from dataclasses import replace
 import itertools
 import math
 import time
@@ -54,10 +55,11 @@ def plan(
     algorithm : str or planner
         A name of ``ALGORITHMS`` or a planner value such as ``RRT(max_step=0.5)``.
     goal_radius : float
-        Above 0 the path ends at the first sample within this distance [m] of the goal (the paper's
-        goal region). At 0 it ends exactly at the goal, as soon as a sample sees it.
+        Above 0 the path ends within this distance [m] of the goal (the paper's goal region): at
+        the first sample there, or where a tree that grew from the goal began. At 0 it ends exactly
+        at the goal, as soon as a sample sees it.
     time_limit : float
-        Seconds for the whole call, above 0; inf for none. Compilation does not count.
+        Seconds for the whole call, inf for no limit. Compilation does not count.
     max_iterations : int, optional
         Transitions allowed for one search.
     seed : int, optional
@@ -65,7 +67,8 @@ def plan(
     simplify : bool
         Whether the path is shortened by visibility.
     optimize_for : float
-        Seconds, within the time limit, to search again and again for a shorter path.
+        Seconds, within the time limit, to search again and again for a shorter path; a straight
+        one ends it.
     optimize_iterations : int
         How many more searches to run for a shorter path; together with ``optimize_for`` whichever
         ends first.
@@ -103,8 +106,9 @@ def plan(
     first, iterations = best.first, best.search.iterations
     if first is not None and (improve_seconds or improve_searches):
         until = time.perf_counter() + (improve_seconds or math.inf)
-        limits = limits._replace(deadline=min(limits.deadline, until))
-        best, iterations = _improve(request, best, improve_searches or math.inf, limits, began)
+        improving = replace(limits, deadline=min(limits.deadline, until))
+        best, iterations = _improve(request, best, improve_searches or math.inf, improving, began)
+        limits.cut = limits.cut or improving.cut
     samples = space.from_kernel(best.search.samples)
     samples[0] = request.start
     return PlanResult(
@@ -119,7 +123,7 @@ def plan(
         counts=best.search.counts,
         elapsed=time.perf_counter() - began,
         seed=request.seed,
-        cut_by_time=limits.stop() is PlannerStatus.TIMEOUT,
+        cut_by_time=limits.cut,
         first_solution=first,
     )
 
@@ -167,31 +171,42 @@ class _Attempt(NamedTuple):
 
 def _attempt(request: Request, number: int, limits: Limits, began: float) -> _Attempt:
     """Search once and shorten what was found."""
-    space = request.space
-    for salt in itertools.count():
-        search = request.planner.start(
-            request.problem, request.generator(number, SEARCH, salt), space.scale
-        )
-        status = limits.run(search)
-        if status is not PlannerStatus.SOLVED:
-            return _Attempt(status, search, np.empty((0, space.dim)), math.inf, None)
-        path = _path_found(request, search)
-        # A path so close to a corner that the caller's coordinates round it into the obstacle
-        # is none: search again.
-        if space.first_blocked_segment(path) is None:
-            break
+    status, search, path = _search(request, number, limits)
+    if status is not PlannerStatus.SOLVED:
+        return _Attempt(status, search, path, math.inf, None)
     first = FirstSolution(time.perf_counter() - began, path_length(path))
     if not request.simplify or len(path) == 2:
         return _Attempt(status, search, path, first.length, first)
-    path = shorten(space, path, request.generator(number, SHORTEN), limits)
+    path = shorten(request.space, path, request.generator(number, SHORTEN), limits)
     return _Attempt(status, search, path, path_length(path), first)
+
+
+def _search(request: Request, number: int, limits: Limits) -> tuple[PlannerStatus, Search, Floats]:
+    """
+    Search for a path (m, dim) that is free in the caller's coordinates.
+
+    One so close to a corner that those coordinates round it into the obstacle is none: then the
+    search begins again.
+    """
+    for salt in itertools.count():
+        search = request.planner.start(request.problem, request.generator(number, SEARCH, salt))
+        status = limits.run(search)
+        if status is PlannerStatus.SOLVED:
+            path = _path_found(request, search)
+            if request.space.first_blocked_segment(path) is None:
+                return status, search, path
+            status = limits.stop() or status
+        if status is not PlannerStatus.SOLVED:
+            break
+    return status, search, np.empty((0, request.space.dim))
 
 
 def _path_found(request: Request, search: Search) -> Floats:
     """Path (m, dim) of a solved search, caller's frame; its ends are the caller's own numbers."""
-    path = request.space.from_kernel(search.path)
+    found = search.path
+    path = request.space.from_kernel(found)
     path[0] = request.start
-    if request.goal_radius == 0.0:
+    if np.array_equal(found[-1], request.problem.goal):
         path[-1] = request.goal
     return path
 
@@ -201,7 +216,7 @@ def _improve(
 ) -> tuple[_Attempt, int]:
     """Search again from fresh seeds: the attempt with the shortest path, and all transitions."""
     iterations, number = best.search.iterations, 1
-    while number <= searches and limits.stop() is None:
+    while number <= searches and len(best.path) > 2 and limits.stop() is None:
         again = _attempt(request, number, limits, began)
         iterations += again.search.iterations
         number += 1
@@ -227,7 +242,7 @@ def _compile(request: Request) -> None:
     space, kinds = request.space, (type(request.space.data), type(request.planner))
     if kinds in _compiled:
         return
-    search = request.planner.start(request.problem, np.random.default_rng(0), space.scale)
+    search = request.planner.start(request.problem, np.random.default_rng(0))
     search.advance(0)
     without_search(request)
     ends = np.stack([request.start, request.goal])

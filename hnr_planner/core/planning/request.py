@@ -76,6 +76,7 @@ def check_request(
         goal_radius=goal_radius / space.scale,
         margin=space.margin,
         clearance=space.typical_clearance,
+        scale=space.scale,
     )
     planner = make_planner(algorithm, settings)
     return Request(

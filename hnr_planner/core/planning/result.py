@@ -45,9 +45,10 @@ class PlanResult:
     length : float
         Length of the path [m]; inf when there is none.
     samples : (k, dim)
-        The start, then one row for each accepted vertex of the search.
+        The start, then one row for each vertex of the search; a second tree has its root at the
+        goal.
     parents : (k,) int
-        Row of ``samples`` that each was reached from; -1 for the start.
+        Row of ``samples`` that each was reached from; -1 for the roots.
     iterations : int
         Transitions handled: proposals inside the space, whatever became of them.
     counts : dict
@@ -57,7 +58,8 @@ class PlanResult:
     seed : int
         The seed that gives this result again.
     cut_by_time : bool
-        Whether a clock ended something: only then may the same seed give another result.
+        Whether a clock or a cancellation ended something: only then may the same seed give
+        another result.
     first_solution : FirstSolution or None
 
     """

@@ -41,12 +41,14 @@ class RRT:
     name: ClassVar[str] = 'rrt'
 
     def __post_init__(self) -> None:
-        if check_number('max_step', self.max_step, 0.0) == 0.0:
+        max_step = check_number('max_step', self.max_step, 0.0)
+        if max_step == 0.0:
             raise RequestError('max_step must be above 0, got 0.0')
+        object.__setattr__(self, 'max_step', max_step)
 
-    def start(self, problem: Problem, rng: np.random.Generator, scale: float) -> 'RRTSearch':
+    def start(self, problem: Problem, rng: np.random.Generator) -> 'RRTSearch':
         """Start a tree at the problem's start."""
-        return RRTSearch(problem, rng, self.max_step / scale)
+        return RRTSearch(problem, rng, self.max_step / problem.scale)
 
 
 @dataclass

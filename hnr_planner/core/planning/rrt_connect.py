@@ -13,7 +13,7 @@ from hnr_planner.core.kernels import kernel
 from hnr_planner.core.planning.nearest import BoxTree, empty_box_tree, grown, insert, nearest
 from hnr_planner.core.planning.rrt import draw_in_box, extend, PROPOSALS_PER_ITERATION
 from hnr_planner.core.planning.search import NONE, Problem, reaches_goal, through, with_room
-from hnr_planner.core.spaces.primitives import contains, sees
+from hnr_planner.core.spaces.primitives import component, contains, sees
 import numpy as np
 from numpy.typing import NDArray
 
@@ -47,9 +47,7 @@ class RRTConnect:
 
     name: ClassVar[str] = 'rrt_connect'
 
-    def start(
-        self, problem: Problem, rng: np.random.Generator, scale: float
-    ) -> 'RRTConnectSearch':
+    def start(self, problem: Problem, rng: np.random.Generator) -> 'RRTConnectSearch':
         """Start a tree at each end."""
         return RRTConnectSearch(problem, rng)
 
@@ -59,7 +57,7 @@ class RRTConnectSearch:
     """
     Two trees under way; a transition is one proposal inside the space and what it leads to.
 
-    A goal region whose centre is not free has no second tree: the first has to find into it.
+    A goal region whose centre cannot be reached has no second tree: the first has to find into it.
     """
 
     problem: Problem
@@ -133,9 +131,9 @@ class RRTConnectSearch:
 
 @kernel
 def _plant(problem, trees):
-    """Plant a root at each end that is free, and return how many were."""
+    """Plant a root at the start, and one at a goal that it can reach; return how many."""
     _add(trees, 0, NONE)
-    if not contains(problem.space, problem.goal):
+    if component(problem.space, problem.goal) != component(problem.space, problem.start):
         return 1
     _add(trees, 1, NONE)
     return 2

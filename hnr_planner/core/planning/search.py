@@ -37,6 +37,8 @@ class Problem(NamedTuple):
         Distance from a chord's end at which one stops.
     clearance : float
         What a free point is away from the boundary, roughly and on average.
+    scale : float
+        Caller's units [m] in one unit of the kernel frame.
 
     """
 
@@ -48,6 +50,7 @@ class Problem(NamedTuple):
     goal_radius: float
     margin: float
     clearance: float
+    scale: float
 
 
 @kernel
@@ -78,7 +81,7 @@ class Search(Protocol):
 
     @property
     def parents(self) -> NDArray[np.int64]:
-        """Index (k,) of the sample that each was reached from; -1 for the start."""
+        """Index (k,) of the sample that each was reached from; -1 for the roots."""
 
     @property
     def path(self) -> Floats:
@@ -99,8 +102,8 @@ class Planner(Protocol):
     def name(self) -> str:
         """Name in ``plan``'s table of algorithms."""
 
-    def start(self, problem: Problem, rng: np.random.Generator, scale: float) -> Search:
-        """Start a search; ``scale`` is the caller's units [m] in one of the kernel frame."""
+    def start(self, problem: Problem, rng: np.random.Generator) -> Search:
+        """Start a search."""
 
 
 def branch(samples: Floats, parents: NDArray[np.int64], k: int) -> Floats:

@@ -31,13 +31,15 @@ def skip(space, points, kept, n_kept, looked_at, tests_max):
     while tests < tests_max and kept[n_kept - 1] < last:
         at = kept[n_kept - 1]
         stride = 1 + (last - at) // looked_at
-        found = last
-        while found > at + 1:
-            tests += 1
-            if sees(space, points[at], points[found]):
+        found = at + 1
+        for candidate in range(last, at + 1, -stride):
+            if tests == tests_max:
                 break
-            found -= stride
-        kept[n_kept] = max(found, at + 1)
+            tests += 1
+            if sees(space, points[at], points[candidate]):
+                found = candidate
+                break
+        kept[n_kept] = found
         n_kept += 1
     return n_kept, tests
 
@@ -47,12 +49,12 @@ def tighten(space, points, margin, rng, tests_max):
     """Join random points of the path, then pull and cut at each vertex: (path, tests)."""
     tests = 0
     for _ in range(TRIES * (len(points) - 1)):
-        if tests >= tests_max:
+        if tests + 3 > tests_max:
             break
         points = _join_two(space, points, rng)
         tests += 3
     k = 1
-    while k < len(points) - 1 and tests < tests_max:
+    while k < len(points) - 1 and tests + 1 + 3 * HALVINGS <= tests_max:
         if sees(space, points[k - 1], points[k + 1]):
             points = _replaced(points, k, points[:0])
             tests += 1

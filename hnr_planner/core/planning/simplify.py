@@ -64,6 +64,7 @@ def simplify(
     path = check_path(space, path)
     max_iterations = check_count('max_iterations', max_iterations, 0)
     seconds = math.inf if time_limit is None else check_number('time_limit', time_limit, 0.0)
+    compile_shorten(space, path)
     limits = Limits(time.perf_counter() + seconds)
     rng = np.random.default_rng(check_seed(seed))
     return shorten(space, path, rng, limits, max_iterations)

@@ -8,11 +8,12 @@ from typing import Literal
 from hnr_planner.core.checks import check_point, check_points, check_real, Floats
 from hnr_planner.core.errors import RequestError, SpaceError
 from hnr_planner.core.spaces.clearance import path_clearance, point_clearance
-from hnr_planner.core.spaces.grid_cells import Bools, check_cells, read_occupancy
+from hnr_planner.core.spaces.grid_cells import Bools, read_blocked, read_occupancy
 from hnr_planner.core.spaces.grid_fields import components, free_distance, inflate
 from hnr_planner.core.spaces.grid_frame import GridFrame
+from hnr_planner.core.spaces.grid_parts import nearest_in_part
 from hnr_planner.core.spaces.grid_traversal import GridData
-from hnr_planner.core.spaces.primitives import components as components_of
+from hnr_planner.core.spaces.primitives import part_of
 from hnr_planner.core.spaces.space import Space
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -97,7 +98,7 @@ class GridSpace(Space):
         robot_radius: float = 0.0,
     ) -> 'GridSpace':
         """Build the space whose occupied cells are ``blocked`` (rows, cols) bool; see above."""
-        occupied = check_cells(blocked).astype(bool)
+        occupied = read_blocked(blocked)
         return cls._build(occupied, np.zeros_like(occupied), resolution, origin, robot_radius)
 
     @classmethod
@@ -169,20 +170,20 @@ class GridSpace(Space):
 
     def to_kernel(self, points: Floats) -> Floats:
         """Bring points (..., 2) [m] of the map frame into cells of the kernel frame."""
-        return self.frame.to_cells(points)
+        return self.frame.to_kernel(points)
 
     def from_kernel(self, points: Floats) -> Floats:
         """Bring points (..., 2) in cells of the kernel frame into the map frame [m]."""
-        return self.frame.to_map(points)
+        return self.frame.from_kernel(points)
 
     def turn_to_kernel(self, directions: Floats) -> Floats:
         """Turn directions (..., 2) of the map frame into the grid's."""
-        return self.frame.turn_to_grid(directions)
+        return self.frame.turn_to_kernel(directions)
 
     def cell_centres(self, rows: ArrayLike, columns: ArrayLike) -> Floats:
         """Centres (k, 2) [m] of the cells at ``rows`` and ``columns`` (k,), in the map frame."""
         cells = np.stack([np.asarray(columns), np.asarray(rows)], axis=-1)
-        return self.frame.to_map(cells + (self.frame.RIM + 0.5))
+        return self.frame.from_kernel(cells + (self.frame.RIM + 0.5))
 
     # -- what is free ----------------------------------------------------------------------------
 
@@ -198,13 +199,14 @@ class GridSpace(Space):
 
     def why_not_free(self, point: ArrayLike) -> str:
         """Say in words why ``point`` (2,) [m] is not free."""
-        x, y = self.frame.to_cells(check_point('point', point, 2)) - self.frame.RIM
+        x, y = self.frame.to_kernel(check_point('point', point, 2)) - self.frame.RIM
         rows, columns = self.shape
-        if not (0 <= x < columns and 0 <= y < rows):
+        if not (0 < x < columns and 0 < y < rows):
             lower, upper = self.bounds
+            on_edge = 0 <= x <= columns and 0 <= y <= rows
             return (
-                f'outside the map, which spans x {lower[0]:g}..{upper[0]:g}, '
-                f'y {lower[1]:g}..{upper[1]:g} m'
+                f'{"on the edge of" if on_edge else "outside"} the map, which spans '
+                f'x {lower[0]:g}..{upper[0]:g}, y {lower[1]:g}..{upper[1]:g} m'
             )
         row, column = int(y), int(x)
         cell = f'cell [{row}, {column}]'
@@ -217,7 +219,7 @@ class GridSpace(Space):
         return f'in unknown space: {cell} is unknown'
 
     def _is_near_wall(self, row: int, column: int) -> bool:
-        reach = int(self.robot_radius / self.resolution) + 1
+        reach = int(min(self.robot_radius / self.resolution, max(self.shape))) + 1
         top, left = max(row - reach, 0), max(column - reach, 0)
         bottom, right = row + reach + 1, column + reach + 1
         window = self.occupied[top:bottom, left:right]
@@ -232,8 +234,8 @@ class GridSpace(Space):
         Free cells that share an edge are connected; those that share only a corner are not, since
         the corner touches the two obstacles beside it.
         """
-        part = self._component(check_point('a', a, 2))
-        return part != 0 and part == self._component(check_point('b', b, 2))
+        part = self._part(check_point('a', a, 2))
+        return part != 0 and part == self._part(check_point('b', b, 2))
 
     def region_reachable(self, start: ArrayLike, goal: ArrayLike, radius: float) -> bool:
         """Say whether a path leads from ``start`` to within ``radius`` [m] of ``goal``."""
@@ -252,32 +254,22 @@ class GridSpace(Space):
 
         Free space is open, so a nearest point on the rim of a cell is taken ``margin`` inside.
         """
-        part = self._component(check_point('start', start, 2))
-        target = self.frame.to_cells(check_point('goal', goal, 2))
-        cells = self._cells_around(part, target, radius / self.scale)
-        nearest = np.clip(target, cells + self.margin, cells + 1 - self.margin)
-        offsets = np.hypot(*(nearest - target).T)
-        if part == 0 or not (offsets <= radius / self.scale).any():
+        part = self._part(check_point('start', start, 2))
+        target = self.frame.to_kernel(check_point('goal', goal, 2))
+        if part == 0:
             return None
-        return self.frame.to_map(nearest[offsets.argmin()])
+        nearest, offset = nearest_in_part(self.data.labels, part, target, self.margin)
+        return self.frame.from_kernel(nearest) if offset <= radius / self.scale else None
 
-    def _component(self, point: Floats) -> int:
+    def _part(self, point: Floats) -> int:
         """Part of free space that holds a point (2,) [m]: 0 where it is not free."""
-        return int(components_of(self.data, self.frame.to_cells(point)[np.newaxis])[0])
-
-    def _cells_around(self, part: int, target: Floats, reach: float) -> Floats:
-        """Lower corners (k, 2), kernel frame, of a part's cells in a window of ``reach``."""
-        labels = self.data.labels
-        ends = np.clip(np.stack([target - reach, target + reach + 1]), 0, labels.shape[::-1])
-        (left, bottom), (right, top) = ends.astype(int)
-        rows, columns = np.nonzero(labels[bottom:top, left:right] == part)
-        return np.stack([columns + left, rows + bottom], axis=1).astype(float)
+        return int(part_of(self.data, self.frame.to_kernel(point)))
 
     # -- how far the walls are -------------------------------------------------------------------
 
     def clearance(self, points: ArrayLike) -> Floats:
         """Distance (k,) [m] from points (k, 2) to the nearest occupied square; inf without one."""
-        cells = self.frame.to_cells(np.atleast_2d(check_points('points', points, 2)))
+        cells = self.frame.to_kernel(np.atleast_2d(check_points('points', points, 2)))
         return point_clearance(self._wall_distance, cells) * self.scale
 
     def path_clearance(self, path: ArrayLike) -> float:
@@ -285,5 +277,5 @@ class GridSpace(Space):
         points = check_points('path', path, 2)
         if points.ndim != 2 or len(points) == 0 or not np.isfinite(points).all():
             raise RequestError(f'path must be at least one finite point (m, 2), got {path!r}')
-        cells = self.frame.to_cells(points)
+        cells = self.frame.to_kernel(points)
         return float(path_clearance(self._wall_distance, cells)) * self.scale

@@ -11,10 +11,21 @@ Bools = NDArray[np.bool_]
 
 def check_cells(cells: ArrayLike) -> NDArray[Any]:
     """Return ``cells`` (rows, cols) as an array that is not empty, or raise SpaceError."""
-    array = np.asarray(cells)
+    try:
+        array = np.asarray(cells)
+    except ValueError:
+        raise SpaceError('a grid needs rows of the same length') from None
     if array.ndim != 2 or array.size == 0:
         raise SpaceError(f'a grid needs rows and columns, got an array of shape {array.shape}')
     return array
+
+
+def read_blocked(blocked: ArrayLike) -> Bools:
+    """Return ``blocked`` (rows, cols) as a fresh array of truth values, or raise SpaceError."""
+    values = check_cells(blocked)
+    if values.dtype.kind not in 'biu' or not np.isin(values, (0, 1)).all():
+        raise SpaceError(f'blocked must be true or false, got an array of {values.dtype}')
+    return values.astype(bool)
 
 
 def read_occupancy(data: ArrayLike, occupied_threshold: int, unknown: str) -> tuple[Bools, Bools]:

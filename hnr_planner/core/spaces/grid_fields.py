@@ -1,10 +1,9 @@
 """Fields over the cells of a grid, a pass of OpenCV each: inflation, distance, components."""
 
 import cv2
+from hnr_planner.core.spaces.grid_cells import Bools
 import numpy as np
 from numpy.typing import NDArray
-
-Bools = NDArray[np.bool_]
 
 #: Distances are kept in one byte and end here.
 FARTHEST = 255

@@ -48,8 +48,8 @@ class GridFrame:
         if not 0.0 < resolution < math.inf:
             raise SpaceError(f'resolution must be above 0 and finite, got {resolution!r}')
         try:
-            x, y, yaw = map(float, origin)
-        except (TypeError, ValueError):
+            x, y, yaw = np.asarray(origin, dtype=np.float64).tolist()
+        except (TypeError, ValueError, OverflowError):
             x = y = yaw = math.nan
         if not all(map(math.isfinite, (x, y, yaw))):
             raise SpaceError(f'origin must be three finite numbers (x, y, yaw), got {origin!r}')
@@ -79,15 +79,15 @@ class GridFrame:
     def _corner(self) -> Floats:
         return np.array(self.origin[:2])
 
-    def to_cells(self, points: Floats) -> Floats:
+    def to_kernel(self, points: Floats) -> Floats:
         """Bring points (..., 2) [m] of the map frame into the kernel frame."""
-        return self.turn_to_grid(points - self._corner) / self.resolution + self.RIM
+        return self.turn_to_kernel(points - self._corner) / self.resolution + self.RIM
 
-    def to_map(self, cells: Floats) -> Floats:
+    def from_kernel(self, cells: Floats) -> Floats:
         """Bring points (..., 2) of the kernel frame into the map frame [m]."""
         return _turned((cells - self.RIM) * self.resolution, self.origin[2]) + self._corner
 
-    def turn_to_grid(self, directions: Floats) -> Floats:
+    def turn_to_kernel(self, directions: Floats) -> Floats:
         """Turn directions (..., 2) of the map frame into the grid's frame."""
         return _turned(directions, -self.origin[2])
 

@@ -98,12 +98,9 @@ def contains_around(space, x, slack):
 
 
 @kernel
-def components(space, points):
-    """Return the connected part (k,) int of each of ``points`` (k, dim); 0 where not free."""
-    parts = np.empty(len(points), dtype=np.int64)
-    for k in range(len(points)):
-        parts[k] = component(space, points[k])
-    return parts
+def part_of(space, x):
+    """Return the number of the connected part that holds ``x``: ``component`` for Python."""
+    return component(space, x)
 
 
 @kernel

@@ -12,12 +12,10 @@ when the chord reaches beyond its end. The rules at the boundary are the same fo
 from abc import ABC, abstractmethod
 from typing import Any, NamedTuple
 
-from hnr_planner.core.checks import check_direction, check_point, check_points
+from hnr_planner.core.checks import check_direction, check_point, check_points, Floats
 from hnr_planner.core.spaces.primitives import are_free, chord, first_blocked_segment, sees
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
-
-Floats = NDArray[np.float64]
+from numpy.typing import ArrayLike
 
 #: How far before the end of a chord one stops, as a fraction of the bounds' diagonal.
 MARGIN = 1e-9

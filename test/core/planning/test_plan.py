@@ -124,7 +124,12 @@ def test_inputs_are_not_changed():
 
 @pytest.mark.parametrize(
     ('start', 'words'),
-    [((-1.0, 1.0), 'outside the map'), ((10.5, 5.5), 'occupied'), ((11.0, 5.5), 'on the edge')],
+    [
+        ((-1.0, 1.0), 'outside the map'),
+        ((0.0, 0.0), 'on the edge of the map'),
+        ((10.5, 5.5), 'occupied'),
+        ((11.0, 5.5), 'on the edge of a blocked cell'),
+    ],
 )
 def test_a_start_that_is_not_free(start: tuple[float, float], words: str):
     assert BLOCKED[5, 10] and not BLOCKED[5, 11]
@@ -238,6 +243,48 @@ def test_threads_plan_side_by_side_and_get_what_they_get_alone():
         np.testing.assert_array_equal(a, b)
 
 
+def test_a_call_that_was_cut_says_so_and_no_other_does():
+    chain = {'algorithm': 'hit_and_run', 'seed': 3, 'time_limit': 30.0}
+    assert not plan(SPACE, START, GOAL, **chain).cut_by_time
+    assert not plan(SPACE, START, START + 0.01, time_limit=0.0).cut_by_time
+    assert plan(SPACE, START, GOAL, seed=3, optimize_for=0.05).cut_by_time
+    cancelled = threading.Event()
+    cancelled.set()
+    assert plan(SPACE, START, GOAL, cancel=cancelled, **chain).cut_by_time
+
+
+def test_a_goal_that_the_map_s_turn_rounds_into_a_wall_ends_all_the_same():
+    """The goal lies on a line between free cells and rounds beyond it on the way back."""
+    blocked = np.zeros((60, 60), dtype=bool)
+    blocked[:, 45:] = blocked[40:, :] = True
+    space = GridSpace.from_blocked(blocked, 0.05, (1.59, -29.58, 0.5))
+    goal = (3.146091805017091, -27.735290246340803)
+    assert space.contains(goal)
+    start = space.cell_centres(5, 5)
+    for algorithm in ALGORITHMS:
+        result = plan(space, start, goal, algorithm=algorithm, goal_radius=0.3, time_limit=5.0)
+        assert result.status is PlannerStatus.SOLVED
+        assert space.first_blocked_segment(result.path) is None
+
+
+def test_a_straight_path_is_not_searched_again():
+    began = time.perf_counter()
+    result = plan(SPACE, START, START + 0.01, optimize_for=20.0, time_limit=30.0)
+    assert time.perf_counter() - began < 10.0
+    assert result.status is PlannerStatus.SOLVED and not result.cut_by_time
+
+
+def test_a_region_larger_than_a_large_map_costs_little():
+    """A goal that is blocked, and a region over all sixteen million cells."""
+    blocked = np.zeros((4000, 4000), dtype=bool)
+    blocked[1990:2010, 1990:2010] = True
+    space = GridSpace.from_blocked(blocked)
+    result = plan(space, (10.5, 10.5), (2000.0, 2000.0), goal_radius=1e5, time_limit=5.0, seed=0)
+    assert result.status is PlannerStatus.SOLVED
+    nearest = space.nearest_reachable((10.5, 10.5), (2000.0, 2000.0), 1e5)
+    np.testing.assert_allclose(np.abs(nearest - 2000.0).max(), 10.0, atol=1e-4)
+
+
 # -- malformed -----------------------------------------------------------------------------------
 
 
@@ -263,6 +310,10 @@ def test_threads_plan_side_by_side_and_get_what_they_get_alone():
         ({'algorithm': 'hit_and_run', 'max_step': 1.0}, "no setting 'max_step'"),
         ({'algorithm': 'rrt', 'step': 1.0}, "no setting 'step'; it has max_step"),
         ({'algorithm': 'rrt', 'max_step': 0.0}, 'max_step must be above 0'),
+        ({'algorithm': None}, 'algorithm must be a name or a planner value, got None'),
+        ({'algorithm': RRT}, 'algorithm must be a name or a planner value'),
+        ({'algorithm': 'rrt', 'max_step': 'far'}, "max_step must be a number, got 'far'"),
+        ({'start': (10**400, 1)}, 'start must be numbers'),
         ({'algorithm': RRT(), 'max_step': 1.0}, 'go with the name of a planner only'),
     ],
 )

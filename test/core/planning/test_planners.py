@@ -33,8 +33,9 @@ def start_search(algorithm: str, blocked: NDArray[np.bool_], seed: int, goal_rad
         goal_radius,
         space.margin,
         space.typical_clearance,
+        space.scale,
     )
-    return make_planner(algorithm, {}).start(problem, np.random.default_rng(seed), 1.0)
+    return make_planner(algorithm, {}).start(problem, np.random.default_rng(seed))
 
 
 # -- every planner -------------------------------------------------------------------------------
@@ -261,3 +262,18 @@ def test_connect_never_fails_on_a_spiral(width: float):
             space, problem.start, problem.goal, algorithm='hit_and_run_connect', seed=seed
         )
         assert result.status is PlannerStatus.SOLVED
+
+
+@CONNECTING
+def test_connect_plants_no_tree_where_the_start_cannot_get(algorithm: str):
+    """The region's centre lies in a sealed box, and the region reaches out of it."""
+    blocked = np.zeros((40, 40), dtype=bool)
+    blocked[25:36, 25:36] = True
+    blocked[28:33, 28:33] = False
+    blocked[:30, 10] = True
+    space = GridSpace.from_blocked(blocked)
+    result = plan(space, (2.5, 2.5), (30.5, 30.5), algorithm=algorithm, goal_radius=8.0, seed=0)
+    assert result.status is PlannerStatus.SOLVED
+    assert np.hypot(*(result.path[-1] - (30.5, 30.5))) <= 8.0
+    assert all(space.connected((2.5, 2.5), sample) for sample in result.samples)
+    assert (result.parents == -1).sum() == 1

@@ -1,11 +1,16 @@
 """Simplified paths: free, with the same ends, never longer, for a bounded amount of work."""
 
 import math
+import os
+from pathlib import Path
+import subprocess
+import sys
 from test.brute_force import path_collisions
 from test.laws import maps
 
 from hnr_planner.core import GridSpace, plan, RequestError, simplify
 from hnr_planner.core.planning.lengths import path_length
+from hnr_planner.core.planning.shortcuts import skip, tighten
 import numpy as np
 from numpy.typing import NDArray
 import pytest
@@ -82,6 +87,40 @@ def test_no_work_and_no_time_leave_the_path_as_it_is():
     path = chain(2)
     np.testing.assert_array_equal(simplify(SPACE, path, seed=0, max_iterations=0), path)
     np.testing.assert_array_equal(simplify(SPACE, path, seed=0, time_limit=0.0), path)
+
+
+@pytest.mark.parametrize('budget', [0, 1, 10, 100, 1000])
+def test_the_number_of_visibility_tests_is_never_exceeded(budget: int):
+    points = SPACE.to_kernel(chain(3))
+    kept = np.zeros(len(points), dtype=np.int64)
+    assert skip(SPACE.data, points, kept, 1, 32, budget)[1] <= budget
+    rng = np.random.default_rng(0)
+    assert tighten(SPACE.data, points, SPACE.margin, rng, budget)[1] <= budget
+
+
+COMPILING = """
+import numpy as np
+from hnr_planner.core import GridSpace, simplify
+blocked = np.zeros((40, 40), bool)
+blocked[:30, 20] = True
+space = GridSpace.from_blocked(blocked)
+path = [(5, 2), (2, 38), (38, 38), (36, 2)]
+first, second = (simplify(space, path, seed=0, time_limit=0.5) for _ in range(2))
+assert len(first) > 2 and np.array_equal(first, second), (first, second)
+"""
+
+
+def test_compilation_does_not_count_in_the_time_limit(tmp_path: Path):
+    environment = dict(os.environ, NUMBA_CACHE_DIR=str(tmp_path))
+    done = subprocess.run(
+        [sys.executable, '-c', COMPILING],
+        env=environment,
+        capture_output=True,
+        text=True,
+        timeout=120,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
 
 
 @pytest.mark.parametrize(

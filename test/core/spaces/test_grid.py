@@ -109,7 +109,7 @@ def test_bounds_hold_the_turned_map():
 
 
 def test_maps_in_national_grids_work():
-    """Coordinates of 5,000 km keep nine digits below a cell of .05 m: enough."""
+    """Coordinates of 5,000 km are rounded to 2e-8 of a cell of .05 m: enough."""
     space = GridSpace.from_blocked(maps.TWO_ROOMS, 0.05, (5e5, 5e6, 0.1))
     free = np.argwhere(~maps.TWO_ROOMS)
     assert space.contains(space.cell_centres(*free.T)).all()
@@ -179,6 +179,8 @@ FREE = np.zeros((2, 3), dtype=np.int8)
         ((FREE, 0.1, (0.0, 0.0, np.inf)), 'origin must be three finite numbers'),
         ((FREE, 0.1, (0.0, 0.0)), 'origin must be three finite numbers'),
         ((FREE, 0.05, (1e9, 0.0, 0.0)), 'too far away'),
+        (([[0, 1], [0]], 0.1), 'rows of the same length'),
+        ((FREE, 0.1, '123'), "origin must be three finite numbers .* got '123'"),
         ((FREE, 'fine'), "resolution must be a number, got 'fine'"),
         ((FREE, 0.1, 'here'), "origin must be three finite numbers .* got 'here'"),
     ],
@@ -187,6 +189,18 @@ def test_a_map_that_is_none_is_refused(arguments, words: str):
     with pytest.raises(SpaceError, match=words) as caught:
         GridSpace.from_occupancy(*arguments)
     assert isinstance(caught.value, ValueError) and isinstance(caught.value, HnrError)
+
+
+@pytest.mark.parametrize('blocked', [[[0, 50]], [[0.0, np.nan]], [['wall', '']], [[-1, 0]]])
+def test_cells_that_are_neither_true_nor_false_are_refused(blocked):
+    with pytest.raises(SpaceError, match='true or false'):
+        GridSpace.from_blocked(blocked)
+
+
+def test_a_radius_beyond_all_cells_blocks_them_all_and_is_named():
+    space = GridSpace.from_blocked(maps.TWO_ROOMS, robot_radius=1e308)
+    assert space.blocked.all()
+    assert 'robot radius' in space.why_not_free((0.5, 0.5))
 
 
 @pytest.mark.parametrize(
