@@ -24,17 +24,17 @@ def skip(space, points, kept, n_kept, looked_at, tests_max):
     """
     Go on from the last vertex kept to the last one that it sees, and so on.
 
-    Of a long path a vertex looks at ``looked_at`` others, evenly spread over what is ahead.
-    Returns (vertices kept, visibility tests).
+    Of a long path a vertex looks at ``looked_at`` others, evenly spread over what is ahead; with
+    too few tests left for all of them it does not begin. Returns (vertices kept, tests).
     """
     last, tests = len(points) - 1, 0
-    while tests < tests_max and kept[n_kept - 1] < last:
+    while kept[n_kept - 1] < last:
         at = kept[n_kept - 1]
         stride = 1 + (last - at) // looked_at
+        if tests + (last - at) // stride > tests_max:
+            break
         found = at + 1
         for candidate in range(last, at + 1, -stride):
-            if tests == tests_max:
-                break
             tests += 1
             if sees(space, points[at], points[candidate]):
                 found = candidate

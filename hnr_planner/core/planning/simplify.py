@@ -17,9 +17,11 @@ from hnr_planner.core.spaces.space import Space
 import numpy as np
 from numpy.typing import ArrayLike
 
-#: Visibility tests for one path, and how many of them go by between two looks at the clock.
+#: Visibility tests for one path; how many go by between two looks at the clock, more for long
+#: paths, where a pass over all vertices takes as many.
 TESTS_MAX = 100_000
 TESTS_IN_A_BATCH = 2000
+TESTS_FOR_A_VERTEX = 60
 #: Vertices of a long path that one vertex looks at, in one pass after the other.
 LOOKED_AT = (32, 256)
 #: Rounds end with one that gains less than this part of the length.
@@ -96,7 +98,7 @@ def shorten(
     points, tests = _skip_vertices(space, points, limits, tests_max)
     length, gain = path_length(points), math.inf
     while len(points) > 2 and gain > LEAST_GAIN * length and limits.stop() is None:
-        batch = min(TESTS_IN_A_BATCH, tests_max - tests)
+        batch = min(max(TESTS_IN_A_BATCH, TESTS_FOR_A_VERTEX * len(points)), tests_max - tests)
         points, used = tighten(space.data, points, space.margin, rng, batch)
         tests += used
         gain, length = length - path_length(points), path_length(points)
@@ -114,8 +116,10 @@ def _skip_vertices(
     tests = 0
     for looked_at in (*LOOKED_AT, len(points)):
         kept, n_kept, last = np.zeros(len(points), dtype=np.int64), 1, len(points) - 1
-        while kept[n_kept - 1] < last and tests < tests_max and limits.stop() is None:
-            batch = min(TESTS_IN_A_BATCH, tests_max - tests)
+        began = 0
+        while began < n_kept and kept[n_kept - 1] < last and limits.stop() is None:
+            began = n_kept
+            batch = min(max(TESTS_IN_A_BATCH, len(points)), tests_max - tests)
             n_kept, used = skip(space.data, points, kept, n_kept, looked_at, batch)
             tests += used
         rest = np.arange(kept[n_kept - 1] + 1, len(points))
