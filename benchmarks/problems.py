@@ -1,0 +1,81 @@
+"""Maps and requests, the same for every competitor."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+import os
+from pathlib import Path
+
+from hnr_planner.core import GridSpace
+from hnr_planner.maps import load_map, spiral
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+
+OFFICE = Path(__file__).resolve().parents[1] / 'config' / 'maps' / 'office.yaml'
+#: Robots [m] on the maps that were made by one; on others a point moves.
+ROBOT_RADIUS = {'depot': 0.22, 'tb3_sandbox': 0.22, 'office': 0.22}
+WIDTHS = (2.0, 1.6, 1.2, 1.0, 0.8, 0.6, 0.4)
+PAIRS = 20
+#: Least distance of a pair, as a part of the diagonal of the box around the free space.
+LEAST_APART = 0.4
+
+
+@dataclass(frozen=True, eq=False)
+class Problem:
+    """
+    A ready space and requests in it.
+
+    ``requests`` is (k, 2, 2): start and goal [m] of each, in one part of the free space.
+    """
+
+    name: str
+    space: GridSpace
+    requests: Floats
+
+    @property
+    def is_spiral(self) -> bool:
+        """Whether it is one of the spirals."""
+        return self.name.startswith('spiral')
+
+
+def problems(quick: bool) -> list[Problem]:
+    """Build all problems, or few of them for a quick look."""
+    files = [OFFICE]
+    folder = os.environ.get('HNR_MAPS')
+    if folder:
+        files += sorted([*Path(folder).glob('*.yaml'), *Path(folder).glob('*.map')])
+    if quick:
+        files = [file for file in files if file.stem in ('office', 'depot')]
+    widths = (1.6, 0.8) if quick else WIDTHS
+    return [_map_problem(file) for file in files] + [_spiral_problem(width) for width in widths]
+
+
+def _map_problem(file: Path) -> Problem:
+    grid = load_map(file)
+    space = GridSpace.from_occupancy(
+        grid.data, grid.resolution, grid.origin, robot_radius=ROBOT_RADIUS.get(file.stem, 0.0)
+    )
+    return Problem(file.stem, space, pairs(space, PAIRS))
+
+
+def _spiral_problem(width: float) -> Problem:
+    made = spiral(width)
+    space = GridSpace.from_blocked(made.blocked, made.resolution)
+    # Grid search goes from cell centre to cell centre.
+    columns, rows = (np.array([made.start, made.goal]) / made.resolution).astype(int).T
+    return Problem(f'spiral {width:.1f}', space, space.cell_centres(rows, columns)[np.newaxis])
+
+
+def pairs(space: GridSpace, n_pairs: int) -> Floats:
+    """Draw requests (n_pairs, 2, 2) [m] between cells of the largest part, far from each other."""
+    rng = np.random.default_rng(0)
+    rows, columns = np.nonzero(space.largest_component())
+    diagonal = np.hypot(np.ptp(rows), np.ptp(columns))
+    found: list[Floats] = []
+    while len(found) < n_pairs:
+        k = rng.integers(len(rows), size=2)
+        if np.hypot(*(np.diff(rows[k]), np.diff(columns[k]))) >= LEAST_APART * diagonal:
+            found.append(space.cell_centres(rows[k], columns[k]))
+    return np.array(found)

@@ -1,0 +1,193 @@
+"""What is measured of ours alone: overhead, getting a map ready, growth, keeping to limits."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from statistics import median
+import threading
+import time
+from typing import Any, NamedTuple
+
+from benchmarks.problems import OFFICE, pairs
+import cv2
+from hnr_planner.core import GridSpace, plan
+from hnr_planner.maps import load_map, spiral
+import numpy as np
+from numpy.typing import NDArray
+
+#: Side [cells] of the coarsest building, and how often each cell of it is repeated.
+BUILDING, ENLARGED = 500, (1, 4, 16)
+READY_SIDE = 4000
+#: Time [s] off the core that a call may have and still tell about us.
+LOST = 0.2e-3
+
+
+class Property(NamedTuple):
+    """What was measured, in words, and what it should be."""
+
+    what: str
+    measured: str
+    target: str
+    met: bool
+
+
+def properties(quick: bool) -> Iterator[Property]:
+    """Measure one after the other."""
+    yield _overhead(2000 if quick else 20_000)
+    yield from _readiness(2 if quick else 7)
+    yield _growth(ENLARGED[:2] if quick else ENLARGED, 200 if quick else 1000)
+    yield _time_limit(40 if quick else 200)
+    yield _cancellation(40 if quick else 200)
+
+
+def _overhead(n_calls: int) -> Property:
+    space = GridSpace.from_blocked(np.zeros((100, 100), dtype=bool))
+    times = [_timed(lambda: plan(space, (10.0, 10.0), (90.0, 80.0))) for _ in range(n_calls)]
+    typical = 1e6 * median(times)
+    measured = f'{typical:.1f} us (p95 {1e6 * np.quantile(times, 0.95):.1f})'
+    return Property('call of plan() on an empty map', measured, '30 us', typical <= 30.0)
+
+
+def _office(side: int) -> NDArray[np.int8]:
+    """Draw the office map with (side, side) cells; its cells become rectangles."""
+    data = load_map(OFFICE).data
+    rows, columns = (np.arange(side) * length // side for length in data.shape)
+    return data[np.ix_(rows, columns)]
+
+
+def _readiness(n_repeats: int) -> Iterator[Property]:
+    data = np.kron(_office(BUILDING), np.ones((READY_SIDE // BUILDING,) * 2, dtype=np.int8))
+    free = (data < 65).astype(np.uint8)
+    threads = cv2.getNumThreads()
+    cv2.setNumThreads(1)
+    for radius in (0.0, 0.22):
+        exact, ours = [], []
+        for _ in range(n_repeats):
+            exact.append(
+                _timed(lambda: cv2.distanceTransform(free, cv2.DIST_L2, cv2.DIST_MASK_PRECISE))
+            )
+            ours.append(
+                _timed(lambda r=radius: GridSpace.from_occupancy(data, 0.05, robot_radius=r))
+            )
+        factor = median(ours) / median(exact)
+        yield Property(
+            f'a map of {READY_SIDE}^2 cells ready, robot radius {radius:g} m',
+            f'{1e3 * median(ours):.0f} ms, {factor:.2f} x the exact distance transform',
+            '3 x',
+            factor <= 3.0,
+        )
+    cv2.setNumThreads(threads)
+    space = GridSpace.from_occupancy(data, 0.05)
+    arrays = (*space.data, space._wall_distance)
+    n_bytes = sum(array.nbytes for array in arrays) / data.size
+    yield Property('memory of a ready map', f'{n_bytes:.1f} bytes a cell', '12', n_bytes <= 12.0)
+
+
+def _growth(factors: tuple[int, ...], n_runs: int) -> Property:
+    """Time the same requests in the same building, with the cells of the coarsest repeated."""
+    coarse = _office(BUILDING)
+    requests = pairs(GridSpace.from_occupancy(coarse, 1.0), 10)
+    typical = []
+    for factor in factors:
+        data = np.kron(coarse, np.ones((factor, factor), dtype=np.int8))
+        space = GridSpace.from_occupancy(data, 1.0 / factor)
+        times = [
+            _timed(lambda s=space, k=k: plan(s, *requests[k % 10], simplify=False, seed=k))
+            for k in range(n_runs)
+        ]
+        typical.append(median(times))
+    sizes = ', '.join(f'{BUILDING * factor}^2' for factor in factors)
+    each = ', '.join(f'{1e3 * seconds:.3f}' for seconds in typical)
+    factor = max(typical) / typical[0]
+    measured = f'{each} ms for {sizes} cells: {factor:.2f} x'
+    return Property('growth of the time to the first path', measured, '4 x', factor <= 4.0)
+
+
+def _endless() -> tuple[GridSpace, Any, Any]:
+    """Return a request that no planner ends in the time that it gets here."""
+    made = spiral(0.12)
+    return GridSpace.from_blocked(made.blocked, made.resolution), made.start, made.goal
+
+
+def _time_limit(n_calls: int) -> Property:
+    space, start, goal = _endless()
+    worst = {}
+    for algorithm in ('auto', 'hit_and_run', 'rrt'):
+        late = _Lateness()
+        for k in range(n_calls):
+            limit = 0.005 + 0.02 * k / n_calls
+            due = [time.perf_counter() + limit]
+            with late.one(due):
+                plan(space, start, goal, algorithm=algorithm, time_limit=limit, seed=k)
+        worst[algorithm] = late
+    return _summed('time limit overrun, p99', worst, 2.0)
+
+
+def _cancellation(n_calls: int) -> Property:
+    space, start, goal = _endless()
+    worst = {}
+    for algorithm in ('auto', 'hit_and_run', 'rrt'):
+        late = _Lateness()
+        for k in range(n_calls):
+            cancel, due = threading.Event(), []
+            timer = threading.Timer(0.005 + 0.01 * k / n_calls, _cancel, (cancel, due))
+            timer.start()
+            with late.one(due):
+                plan(space, start, goal, algorithm=algorithm, cancel=cancel, seed=k)
+            timer.join()
+        worst[algorithm] = late
+    return _summed('time from cancellation to return, p99', worst, 5.0)
+
+
+def _cancel(cancel: threading.Event, due: list[float]) -> None:
+    due.append(time.perf_counter())
+    cancel.set()
+
+
+class _Lateness:
+    """
+    How late calls came back [s].
+
+    What is asked holds for an idle core, so calls that did not have one for longer than LOST are
+    counted apart.
+    """
+
+    def __init__(self) -> None:
+        self.undisturbed: list[float] = []
+        self.disturbed: list[float] = []
+
+    @contextmanager
+    def one(self, due: list[float]) -> Iterator[None]:
+        """Time a call; when it was due to end is in the list by the time that it does."""
+        began, worked_before = time.perf_counter(), time.thread_time()
+        yield
+        ended, worked = time.perf_counter(), time.thread_time() - worked_before
+        calls = self.undisturbed if ended - began - worked < LOST else self.disturbed
+        calls.append(ended - due[0])
+
+    @property
+    def worst(self) -> float:
+        """The 99th percentile [ms] of the calls that had their core; of all where none did."""
+        return 1e3 * float(np.quantile(self.undisturbed or self.disturbed, 0.99))
+
+    @property
+    def worst_of_all(self) -> float:
+        """The 99th percentile [ms] of all calls."""
+        return 1e3 * float(np.quantile(self.undisturbed + self.disturbed, 0.99))
+
+
+def _summed(what: str, late: dict[str, _Lateness], target: float) -> Property:
+    words = [
+        f'{name} {calls.worst:.2f} ms ({len(calls.undisturbed)} calls; '
+        f'{calls.worst_of_all:.1f} with {len(calls.disturbed)} that lost the core)'
+        for name, calls in late.items()
+    ]
+    met = max(calls.worst for calls in late.values()) <= target
+    return Property(what, ', '.join(words), f'{target:g} ms', met)
+
+
+def _timed(call: Callable[[], Any]) -> float:
+    began = time.perf_counter()
+    call()
+    return time.perf_counter() - began
