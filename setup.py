@@ -65,7 +65,7 @@ setup(
         # here and lets its own stand.
         (f'lib/{package_name}', ['scripts/map_node', 'scripts/planner_node']),
     ],
-    zip_safe=True,
+    zip_safe=False,  # the kernels' cache is keyed by their source files
     entry_points={
         'console_scripts': [
             'map_node = hnr_planner.ros.map_node:main',

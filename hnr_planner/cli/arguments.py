@@ -7,19 +7,23 @@ Importing this is cheap; the map and the planner are imported when a map is open
 from __future__ import annotations
 
 import argparse
+from collections.abc import Callable
 import math
 from pathlib import Path
 import re
 import sys
 import threading
-from typing import NoReturn, TYPE_CHECKING
+from typing import NoReturn, TYPE_CHECKING, TypeVar
 
 if TYPE_CHECKING:
     from hnr_planner.core import GridSpace
     from hnr_planner.maps import OccupancyMap
 
+Number = TypeVar('Number', int, float)
+
 BAD_INPUT = 2
 PICTURES = ('.png', '.svg', '.pdf')
+KINDS = {float: 'number', int: 'whole number'}
 PATIENCE = 2.0
 """How long the kernels may take to load before we say what we wait for [s]."""
 
@@ -50,50 +54,38 @@ def error_line(message: str) -> str:
     return 'error: ' + ' '.join(message.split())
 
 
-def number(text: str) -> float:
-    """Return a finite float, for argparse."""
-    try:
-        value = float(text)
-    except ValueError:
-        raise argparse.ArgumentTypeError(f'{text!r} is not a number') from None
-    if not math.isfinite(value):
-        raise argparse.ArgumentTypeError(f'{text!r} is not a finite number')
-    return value
+def bounded(
+    kind: type[Number],
+    *,
+    least: float = -math.inf,
+    above: float = -math.inf,
+    most: float = math.inf,
+) -> Callable[[str], Number]:
+    """Return what reads a finite number of a kind, and within bounds, for argparse."""
+
+    def read(text: str) -> Number:
+        try:
+            value = kind(text)
+        except ValueError:
+            raise argparse.ArgumentTypeError(f'{text!r} is not a {KINDS[kind]}') from None
+        if not -math.inf < value < math.inf:
+            raise argparse.ArgumentTypeError(f'{text!r} is not a finite number')
+        if value < least:
+            raise argparse.ArgumentTypeError(f'{text} is less than {least}')
+        if value <= above:
+            raise argparse.ArgumentTypeError(f'{text} is not above {above}')
+        if value > most:
+            raise argparse.ArgumentTypeError(f'{text} is more than {most}')
+        return value
+
+    return read
 
 
-def length(text: str) -> float:
-    """Return a finite float that is not negative, for argparse."""
-    value = number(text)
-    if value < 0.0:
-        raise argparse.ArgumentTypeError(f'{text} is negative')
-    return value
-
-
-def duration(text: str) -> float:
-    """Return a finite float above 0, for argparse."""
-    value = number(text)
-    if value <= 0.0:
-        raise argparse.ArgumentTypeError(f'{text} is not above 0')
-    return value
-
-
-def whole(text: str) -> int:
-    """Return a whole number that is not negative, for argparse."""
-    try:
-        value = int(text)
-    except ValueError:
-        raise argparse.ArgumentTypeError(f'{text!r} is not a whole number') from None
-    if value < 0:
-        raise argparse.ArgumentTypeError(f'{text} is negative')
-    return value
-
-
-def count(text: str) -> int:
-    """Return a whole number of at least 1, for argparse."""
-    value = whole(text)
-    if value < 1:
-        raise argparse.ArgumentTypeError(f'{text} is less than 1')
-    return value
+number = bounded(float)
+length = bounded(float, least=0)
+duration = bounded(float, above=0)
+whole = bounded(int, least=0)
+count = bounded(int, least=1, most=10**9)
 
 
 def picture(text: str) -> Path:

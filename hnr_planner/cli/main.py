@@ -58,7 +58,7 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def _run(arguments: Namespace) -> int:
-    """Run the command; an error of the input becomes one line and its exit code."""
+    """Run the command; bad input becomes one line and its exit code."""
     from hnr_planner.core.errors import HnrError  # heavy, and --help should be fast
 
     try:
@@ -68,8 +68,11 @@ def _run(arguments: Namespace) -> int:
     except BrokenPipeError:
         raise
     except (BadInputError, HnrError, OSError) as error:
-        print(error_line(str(error)), file=sys.stderr)
-        return BAD_INPUT
+        message = str(error)
+    except (MemoryError, OverflowError) as error:
+        message = f'too large for this machine: {error or type(error).__name__}'
+    print(error_line(message), file=sys.stderr)
+    return BAD_INPUT
 
 
 def build_parser() -> CommandParser:

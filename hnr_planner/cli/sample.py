@@ -33,7 +33,8 @@ example:
 The points are those of a random walk. Left to itself, the walk starts at a uniform point of the
 largest connected free part of the map, so every one of its points is uniform there; neighbours
 in the list depend on each other. With --start it walks on the part in which the start lies, and
-the first points are still near the start. The same seed gives the same points.
+the first points are still near the start. --thin K lets the walk take K steps for each point:
+the points depend less on each other. The same seed gives the same points.
 """
 
 
@@ -52,6 +53,13 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
         choices=WALK_NAMES,
         default='hit_and_run',
         help='the random walk; default hit_and_run',
+    )
+    parser.add_argument(
+        '--thin',
+        type=count,
+        default=1,
+        metavar='K',
+        help='keep every K-th point of the walk and drop those between; default 1, every point',
     )
     parser.add_argument(
         '--start',
@@ -80,12 +88,16 @@ def run(arguments: argparse.Namespace) -> int:
     """Sample, write the points and the picture, and return the exit code."""
     from hnr_planner.core import sample
 
+    if arguments.csv and arguments.plot and arguments.csv.resolve() == arguments.plot.resolve():
+        raise BadInputError(f'--csv and --plot both name {arguments.csv}: choose another name')
     occupancy, space = open_map(arguments)
     keep_map_files(arguments.map, arguments.csv, arguments.plot)
     seed = secrets.randbelow(2**31) if arguments.seed is None else arguments.seed
     compile_kernels()
     start = arguments.start or uniform_start(arguments.map, space, seed)
-    (points,) = sample(space, start, arguments.n, walk=arguments.walk, seed=seed)
+    (points,) = sample(
+        space, start, arguments.n, walk=arguments.walk, thin=arguments.thin, seed=seed
+    )
 
     if arguments.csv:
         with arguments.csv.open('w', encoding='utf-8', newline='') as file:

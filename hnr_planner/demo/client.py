@@ -17,6 +17,7 @@ from typing import Any
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from geometry_msgs.msg import PoseStamped
 from hnr_planner.demo.answer import Answer
+from hnr_planner.demo.scene import ALGORITHMS
 from hnr_planner.ros.outcome_messages import read_outcome
 from hnr_planner.ros.publications import latched
 from nav_msgs.msg import Path as PathMessage
@@ -27,7 +28,6 @@ import rclpy
 from rclpy.node import Node
 from sensor_msgs.msg import PointCloud2
 
-ALGORITHMS = ('hit_and_run', 'rrt')
 PLANNER = 'hnr_planner'
 ARRIVE_WITHIN = 10.0
 """Time for a message that has been published, or a service that is up, to be seen [s]."""
@@ -77,7 +77,7 @@ class Client(Node):
         Parameters
         ----------
         algorithm : str
-            'hit_and_run' or 'rrt'.
+            A name of ALGORITHMS.
         start, goal : (x, y)
             Ends of the path [m].
         frame : str
@@ -141,8 +141,8 @@ def main(argv: list[str] | None = None) -> int:
     parser.add_argument('--ready-within', type=float, default=10.0, metavar='S')
     parser.add_argument('--answer-within', type=float, default=30.0, metavar='S')
     arguments = parser.parse_args(argv)
+    rclpy.init(args=[])
     try:
-        rclpy.init(args=[])
         client = Client()
         client.wait_until_ready(arguments.ready_within)
         for algorithm in ALGORITHMS:
@@ -162,8 +162,12 @@ def main(argv: list[str] | None = None) -> int:
     except LateError as error:
         print(error, file=sys.stderr)
         return 1
-    except (KeyboardInterrupt, rclpy.executors.ExternalShutdownException):
+    except KeyboardInterrupt:
         return 130
+    except Exception:
+        if rclpy.ok():
+            raise
+        return 130  # a signal came, and whatever rclpy was about to do failed in its own way
     finally:
         rclpy.try_shutdown()
     return 0

@@ -144,7 +144,7 @@ class Processes:
         """
         deadline = time.monotonic() + within
         while (code := self._running[name].poll()) is None:
-            self.check_alive()
+            self.check_alive(waiting_for=name)
             if time.monotonic() > deadline:
                 raise ProcessError(f'the {name} was not done after {within:.0f} s')
             if self._screen.silent_for > 5.0:
@@ -154,11 +154,11 @@ class Processes:
         if code != 0:
             raise ProcessError(f'the {name} ended with exit code {code}; see its lines above')
 
-    def check_alive(self) -> None:
-        """Raise ProcessError when a process has ended with an error or on its own."""
+    def check_alive(self, *, waiting_for: str = '') -> None:
+        """Raise ProcessError when a process has ended that nobody waits for."""
         for name, process in self._running.items():
             code = process.poll()
-            if code is not None and name != 'client':
+            if code is not None and name != waiting_for:
                 raise ProcessError(f'the {name} died with exit code {code}; see its lines above')
 
     def stop(self) -> list[str]:

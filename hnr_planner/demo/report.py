@@ -8,9 +8,8 @@ from pathlib import Path
 from hnr_planner import drawing
 from hnr_planner.demo.answer import Answer
 from hnr_planner.demo.check import Check
-from hnr_planner.demo.scene import Scene
+from hnr_planner.demo.scene import ALGORITHMS, Scene
 
-NAMES = {'hit_and_run': 'Hit-and-Run', 'rrt': 'RRT'}
 HEADINGS = ('algorithm', 'status', 'transitions', 'time', 'length', 'min. clearance', 'path check')
 
 
@@ -79,8 +78,8 @@ def planning_time(answer: Answer) -> float:
 def _title(algorithm: str, answer: Answer) -> str:
     """Return the heading of one panel."""
     if answer.outcome != 'SOLVED':
-        return f'{NAMES[algorithm]}: {answer.outcome}'
+        return f'{ALGORITHMS[algorithm]}: {answer.outcome}'
     return (
-        f'{NAMES[algorithm]}: {transitions(answer):,} transitions, '
+        f'{ALGORITHMS[algorithm]}: {transitions(answer):,} transitions, '
         f'{planning_time(answer) * 1e3:.1f} ms, path of {float(answer.values["length"]):.1f} m'
     )

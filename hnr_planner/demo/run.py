@@ -14,10 +14,9 @@ from hnr_planner.demo.answer import Answer
 from hnr_planner.demo.check import Check, check_path
 from hnr_planner.demo.processes import free_domain, Interruptions, ProcessError, Processes, Screen
 from hnr_planner.demo.report import draw, table
-from hnr_planner.demo.scene import choose_scene, Scene
+from hnr_planner.demo.scene import ALGORITHMS, choose_scene, Scene
 import numpy as np
 
-ALGORITHMS = ('hit_and_run', 'rrt')
 TIME_LIMIT = 10.0
 """Of the planner, for each request [s]."""
 SEED = 2016

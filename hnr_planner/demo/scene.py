@@ -11,6 +11,8 @@ from hnr_planner.maps import load_map, OccupancyMap
 import numpy as np
 from numpy.typing import NDArray
 
+ALGORITHMS = {'hit_and_run': 'Hit-and-Run', 'rrt': 'RRT'}
+"""Algorithms that are asked, and what a person calls them."""
 OFFICE = Path('config', 'maps', 'office.yaml')
 ROBOT_RADIUS = 0.22
 LARGE_ENOUGH = 0.5

@@ -1,6 +1,7 @@
 """Maps to run commands on, and two ways to run them."""
 
 from collections.abc import Callable
+import os
 from pathlib import Path
 import subprocess
 import sys
@@ -14,6 +15,8 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
 OFFICE = ROOT / 'config' / 'maps' / 'office.yaml'
+MAPS = Path(os.environ.get('HNR_MAPS', '/nonexistent'))
+REAL_MAPS = sorted(file for file in MAPS.glob('*') if file.suffix in ('.yaml', '.map'))
 TIME_LIMIT = 120.0
 
 

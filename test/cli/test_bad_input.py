@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from pathlib import Path
+import resource
 from test.cli.conftest import Ran, run_process
 
 import pytest
@@ -27,10 +28,6 @@ CASES = {
     'negative goal radius': ([*PLAN, '--goal-radius', '-.1'], ['--goal-radius', '-.1']),
     'negative seed': ([*PLAN, '--seed', '-3'], ['--seed', '-3']),
     'half a seed': ([*PLAN, '--seed', '1.5'], ['--seed', '1.5']),
-    'longer than the limit': (
-        [*PLAN, '--time-limit', '1', '--optimize-for', '2'],
-        ['--optimize-for', '2 s', '1 s'],
-    ),
     'plot in no folder': ([*PLAN, '--plot', 'no/such/a.png'], ['--plot', 'no/such']),
     'plot of no kind': ([*PLAN, '--plot', 'a.txt'], ['--plot', 'a.txt', '.png']),
     'no file': (['plan', 'no_such.yaml', *PLAN[2:]], ['no_such.yaml']),
@@ -38,6 +35,8 @@ CASES = {
     'broken yaml': (['plan', 'BROKEN', *PLAN[2:]], ['BROKEN', 'resolution']),
     'no image': (['plan', 'IMAGELESS', *PLAN[2:]], ['nowhere.pgm']),
     'no points': (['sample', 'MAP', '--n', '0'], ['--n', '0']),
+    'too many points': (['sample', 'MAP', '--n', '100000000000'], ['--n', '100000000000']),
+    'thinned to nothing': (['sample', 'MAP', '--n', '5', '--thin', '0'], ['--thin', '0']),
     'points by halves': (['sample', 'MAP', '--n', '2.5'], ['--n', '2.5']),
     'no number': (['sample', 'MAP'], ['--n']),
     'unknown walk': (['sample', 'MAP', '--n', '5', '--walk', 'moon'], ['moon', 'hit_and_run']),
@@ -46,6 +45,10 @@ CASES = {
         ['99', 'outside the map'],
     ),
     'no free cell': (['sample', 'SOLID', '--n', '5'], ['SOLID', 'free']),
+    'two outputs in one file': (
+        ['sample', 'MAP', '--n', '5', '--csv', 'x.png', '--plot', './x.png'],
+        ['--csv', '--plot', 'x.png'],
+    ),
     'csv is a folder': (['sample', 'MAP', '--n', '5', '--csv', 'FOLDER'], ['--csv', 'FOLDER']),
     'demo without its map': (['demo', '--map', 'no_such.yaml'], ['no_such.yaml']),
     'demo on a solid map': (['demo', '--map', 'SOLID'], ['SOLID', 'free']),
@@ -81,6 +84,18 @@ def test_bad_input_is_one_line_and_code_2(run: Run, places: dict[str, str], case
     assert ran.err.count('\n') == 1 and ran.err.endswith('\n')
     for word in words:
         assert places.get(word, word) in ran.err
+
+
+def test_more_points_than_memory_are_one_line(run: Run, places: dict[str, str]) -> None:
+    before = resource.getrlimit(resource.RLIMIT_AS)
+    resource.setrlimit(resource.RLIMIT_AS, (8 * 10**9, before[1]))
+    try:
+        ran = run('sample', places['MAP'], '--n', 10**9)
+    finally:
+        resource.setrlimit(resource.RLIMIT_AS, before)
+    assert (ran.code, ran.out) == (2, '')
+    assert ran.err.startswith('error: too large for this machine: ')
+    assert ran.err.count('\n') == 1
 
 
 def test_in_a_process_there_is_no_traceback_either() -> None:

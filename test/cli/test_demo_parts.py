@@ -5,9 +5,10 @@ from pathlib import Path
 import signal
 import socket
 from test.brute_force import path_collisions
-from test.cli.conftest import at, OFFICE
+from test.cli.conftest import at, OFFICE, REAL_MAPS
 import time
 
+from hnr_planner.core import plan
 from hnr_planner.demo.check import check_path
 from hnr_planner.demo.processes import free_domain, Interruptions, ProcessError, Processes, Screen
 from hnr_planner.demo.scene import choose_scene, farthest_cells, office_file, SceneError
@@ -109,6 +110,15 @@ class TestScene:
         monkeypatch.setattr('hnr_planner.demo.scene.__file__', str(package / 'demo' / 'scene.py'))
         assert office_file() == file
 
+    @pytest.mark.parametrize('file', REAL_MAPS, ids=lambda file: file.name)
+    def test_real_map_has_a_scene_that_can_be_solved(self, file: Path) -> None:
+        scene = choose_scene(file)
+        path = plan(scene.space, scene.start, scene.goal, time_limit=20.0, seed=1).path
+        check = check_path(
+            path, scene.occupancy, scene.start, scene.goal, robot_radius=scene.robot_radius
+        )
+        assert check.problems == ()
+
     def test_far_apart_is_along_the_way_not_through_the_wall(self) -> None:
         free = np.zeros((30, 30), dtype=bool)
         free[2:28, 2:28] = True
@@ -171,9 +181,9 @@ class TestProcesses:
 
     def test_death_of_another_is_noticed_while_waiting(self, processes: Processes) -> None:
         processes.start('node', 'brief', [])
-        processes.start('client', 'patient', [])
+        processes.start('thing', 'patient', [])
         with pytest.raises(ProcessError, match='the node died with exit code 3'):
-            processes.wait_for('client', 30.0, 'waiting')
+            processes.wait_for('thing', 30.0, 'waiting')
         processes.stop()
 
     def test_a_process_that_takes_too_long_is_given_up(self, processes: Processes) -> None:
@@ -183,8 +193,12 @@ class TestProcesses:
         assert processes.stop() == []
 
     def test_a_process_that_does_not_listen_is_killed(
-        self, processes: Processes, capsys: pytest.CaptureFixture[str]
+        self,
+        processes: Processes,
+        capsys: pytest.CaptureFixture[str],
+        monkeypatch: pytest.MonkeyPatch,
     ) -> None:
+        monkeypatch.setattr('hnr_planner.demo.processes.END_WITHIN', 0.5)
         processes.start('node', 'stubborn', [])
         running = processes._running['node']
         shown, deadline = '', time.monotonic() + 30.0
