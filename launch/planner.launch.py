@@ -10,6 +10,7 @@ from launch import LaunchDescription
 from launch.actions import DeclareLaunchArgument
 from launch.conditions import IfCondition
 from launch.substitutions import (
+    EnvironmentVariable,
     LaunchConfiguration,
     NotEqualsSubstitution,
     PathJoinSubstitution,
@@ -27,6 +28,9 @@ def generate_launch_description() -> LaunchDescription:
     namespace = LaunchConfiguration('namespace')
     map_file = LaunchConfiguration('map')
     clock = {'use_sim_time': ParameterValue(LaunchConfiguration('use_sim_time'), value_type=bool)}
+    # Room for large clouds; a profile that is chosen already stays.
+    profile = 'FASTRTPS_DEFAULT_PROFILES_FILE'
+    our_profile = PathJoinSubstitution([FindPackageShare('hnr_planner'), 'config', 'fastdds.xml'])
     map_parameters = {'yaml_filename': ParameterValue(map_file, value_type=str)}
 
     return LaunchDescription(
@@ -51,6 +55,7 @@ def generate_launch_description() -> LaunchDescription:
                 name='hnr_planner',
                 namespace=namespace,
                 parameters=[LaunchConfiguration('params_file'), clock],
+                additional_env={profile: EnvironmentVariable(profile, default_value=our_profile)},
                 output='screen',
             ),
             Node(

@@ -14,7 +14,7 @@ def warm_up() -> None:
     for algorithm in ALGORITHMS:
         plan(space, start, goal, algorithm=algorithm, seed=0, optimize_iterations=1)
     sample(space, start, 1, seed=0)
-    space.connected(start, goal)
+    space.nearest_reachable(start, goal, 1.0)
     space.chord(start, (1.0, 0.0))
     space.clearance(start)
     space.path_clearance([start, goal])

@@ -11,6 +11,8 @@ from nav_msgs.msg import MapMetaData, OccupancyGrid
 import numpy as np
 from std_msgs.msg import Header
 
+SMALLEST_RESOLUTION, LARGEST_RESOLUTION = 1e-4, 1e3
+"""A map with smaller or larger cells [m] is a mistake: poses and clouds could not show it."""
 LARGEST_TILT = 1e-3
 """A map whose origin is rolled or pitched by more than this [rad] is refused."""
 
@@ -44,8 +46,11 @@ def grid_from_message(message: OccupancyGrid) -> Grid:
             f'{info.height} is {info.width * info.height}'
         )
     resolution = as_written(info.resolution)
-    if not 0.0 < resolution < math.inf:
-        raise MapError(f'the resolution must be positive and finite, got {resolution} m')
+    if not SMALLEST_RESOLUTION <= resolution <= LARGEST_RESOLUTION:
+        raise MapError(
+            f'the resolution must be in {SMALLEST_RESOLUTION:g}..{LARGEST_RESOLUTION:g} m, got '
+            f'{resolution} m'
+        )
     data = np.frombuffer(message.data, dtype=np.int8).reshape(info.height, info.width)
     return Grid(data, resolution, _origin(info.origin), message.header.frame_id)
 
@@ -53,8 +58,9 @@ def grid_from_message(message: OccupancyGrid) -> Grid:
 def _origin(pose: Pose) -> tuple[float, float, float]:
     """Return (x, y, yaw) of the map's origin, or raise MapError."""
     position, rotation = pose.position, pose.orientation
-    if not (math.isfinite(position.x) and math.isfinite(position.y)):
-        raise MapError(f"the map's origin must be finite, got ({position.x}, {position.y})")
+    place = (position.x, position.y, position.z)
+    if not all(math.isfinite(number) for number in place):
+        raise MapError(f"the map's origin must be finite, got {place}")
     quaternion = (rotation.x, rotation.y, rotation.z, rotation.w)
     unit = normalised(quaternion)
     if unit is None:

@@ -1,7 +1,6 @@
 """The executable `map_node`: publishes a map file, for those who have no map_server."""
 
 from collections.abc import Sequence
-from pathlib import Path
 import sys
 from typing import NoReturn
 
@@ -54,7 +53,7 @@ class MapSource(Node):
         wanted = now | changes
         filename = wanted['yaml_filename']
         if not filename:
-            raise MapFileError(Path('yaml_filename'), 'no map file is given')
+            raise MapFileError('the parameter yaml_filename is empty: no map file is given')
         loaded = load_map(filename)
         grid = Grid(loaded.data, loaded.resolution, loaded.origin, wanted['frame_id'])
         self.get_logger().info(f'loaded {filename}: {grid}')

@@ -81,7 +81,7 @@ class MapStore:
         Raises
         ------
         MapError
-            When the map is malformed; what was in use stays in use.
+            When the map cannot be prepared, for whatever reason; what was in use stays in use.
 
         """
         with self._one_at_a_time:
@@ -92,15 +92,24 @@ class MapStore:
                 self._snapshot = self._prepare(grid)
                 self._grid = grid
                 return self._snapshot
-            except HnrError as error:
+            except Exception as error:  # a map must never take the node down
+                why = _in_words(error)
                 self._missing = (
                     Outcome.NO_MAP,
-                    f'no good map has arrived yet; the last was refused: {error}',
+                    f'no good map has arrived yet; the last was refused: {why}',
                 )
-                raise MapError(str(error)) from error
+                raise MapError(why) from error
 
     def use(self, settings: Settings) -> MapSnapshot | None:
-        """Prepare the map again if `settings` ask for another space; return it if they do."""
+        """
+        Prepare the map again if `settings` ask for another space; return it if they do.
+
+        Raises
+        ------
+        MapError
+            When that fails; then no map is in use.
+
+        """
         with self._one_at_a_time:
             if settings.space_arguments == self._arguments:
                 return None
@@ -113,8 +122,18 @@ class MapStore:
                 'the map is just being prepared for changed parameters',
             )
             self._snapshot = None
-            self._snapshot = self._prepare(self._grid)
+            try:
+                self._snapshot = self._prepare(self._grid)
+            except Exception as error:  # a parameter must never take the node down
+                why = f'parameters were changed, but {_in_words(error)}'
+                self._missing = (Outcome.NO_MAP, why)
+                raise MapError(why) from error
             return self._snapshot
+
+    @property
+    def in_use(self) -> bool:
+        """Return whether there is a map in use."""
+        return self._snapshot is not None
 
     def newest(self) -> MapSnapshot:
         """Return the map in use, or raise Refusal (NO_MAP, MAP_NOT_READY)."""
@@ -129,3 +148,10 @@ class MapStore:
         )
         self._prepared += 1
         return MapSnapshot(space, grid, self._prepared)
+
+
+def _in_words(error: Exception) -> str:
+    """Return what is wrong with a map, or what failed while it was prepared."""
+    if isinstance(error, HnrError):
+        return str(error)
+    return f'preparing the map failed: {type(error).__name__}: {" ".join(str(error).split())}'

@@ -138,7 +138,8 @@ class PlannerNode(Node):
         try:
             snapshot = self._maps.receive(lambda: grid_from_message(message))
         except MapError as error:
-            self.get_logger().error(f'map refused, what was in use stays in use: {error}')
+            rest = 'the last good map stays in use' if self._maps.in_use else 'no map is in use'
+            self.get_logger().error(f'map refused, {rest}: {error}')
             return
         self._map_came = began
         self._log_map('received and prepared', snapshot, began)
@@ -146,7 +147,11 @@ class PlannerNode(Node):
     def _use_settings(self, settings: Settings) -> None:
         """Put changed parameters to use."""
         began = time.monotonic()
-        snapshot = self._maps.use(settings)
+        try:
+            snapshot = self._maps.use(settings)
+        except MapError as error:
+            self.get_logger().error(str(error))
+            return
         if snapshot is not None:
             self._log_map('prepared again for changed parameters', snapshot, began)
 

@@ -1,6 +1,7 @@
 """`diagnostic_msgs/DiagnosticArray`: the outcome of a request, and the health of the node."""
 
 from collections.abc import Mapping
+import math
 
 from builtin_interfaces.msg import Time
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
@@ -20,7 +21,7 @@ def outcome_values(report: Report) -> dict[str, str]:
     }
     result = report.result
     if result is not None:
-        first_elapsed, first_length = result.first_solution or (float('nan'), float('nan'))
+        first_elapsed, first_length = result.first_solution or (math.nan, math.nan)
         values |= {
             'algorithm': result.planner,
             'seed': str(result.seed),
@@ -29,7 +30,7 @@ def outcome_values(report: Report) -> dict[str, str]:
             'planning_time': f'{result.elapsed:.6f}',
             'first_solution_time': f'{first_elapsed:.6f}',
             'first_solution_length': f'{first_length:.6g}',
-            'length': f'{result.length:.6g}',
+            'length': f'{result.length if report.solved else math.nan:.6g}',
             'cut_by_time': str(bool(result.cut_by_time)).lower(),
         }
     return values

@@ -1,11 +1,10 @@
 """`nav_msgs/GetPlan` and `nav_msgs/Path` to and from requests and reports."""
 
-import math
-
 from geometry_msgs.msg import Point, PoseStamped, Quaternion
 from geometry_msgs.msg import Pose as PoseMessage
 from hnr_planner.ros.map_messages import as_written
-from hnr_planner.ros.orientations import yaw_of
+from hnr_planner.ros.orientations import Quaternion as Parts
+from hnr_planner.ros.orientations import quaternion_of, yaw_of
 from hnr_planner.ros.poses import Poses, poses_along
 from hnr_planner.ros.requests import Pose, Report, Request
 from nav_msgs.msg import Path
@@ -45,8 +44,7 @@ def path_message(report: Report, spacing: float) -> Path:
         poses = poses_along(report.path, _spacing(report, spacing), final_yaw)
         message.poses = _stamped(poses, header)
         # The goal's own orientation, with the roll and pitch that a yaw cannot hold.
-        x, y, z, w = report.goal_orientation
-        message.poses[-1].pose.orientation = Quaternion(x=x, y=y, z=z, w=w)
+        message.poses[-1].pose.orientation = _orientation(report.goal_orientation)
     return message
 
 
@@ -64,8 +62,13 @@ def _stamped(poses: Poses, header: Header) -> list[PoseStamped]:
             header=header,
             pose=PoseMessage(
                 position=Point(x=x, y=y, z=0.0),
-                orientation=Quaternion(x=0.0, y=0.0, z=math.sin(yaw / 2.0), w=math.cos(yaw / 2.0)),
+                orientation=_orientation(quaternion_of(yaw)),
             ),
         )
         for (x, y), yaw in zip(poses.points.tolist(), poses.yaws.tolist(), strict=True)
     ]
+
+
+def _orientation(parts: Parts) -> Quaternion:
+    x, y, z, w = parts
+    return Quaternion(x=x, y=y, z=z, w=w)

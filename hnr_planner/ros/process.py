@@ -18,7 +18,9 @@ from typing import TypeVar
 
 from hnr_planner.core import HnrError
 import rclpy
+from rclpy.exceptions import ParameterException
 from rclpy.executors import MultiThreadedExecutor
+from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.impl.rcutils_logger import RcutilsLogger
 from rclpy.logging import get_logger
 from rclpy.node import Node
@@ -43,7 +45,8 @@ def run(
     name : str
         Name for the log before there is a node.
     make_node : callable
-        Makes the node; an HnrError that it raises is one line on the log and exit code 1.
+        Makes the node; an HnrError or an error of rclpy that it raises, such as a parameter of
+        the wrong type, is one line on the log and exit code 1.
     threads : int
         Threads that run callbacks.
     prepare : callable, optional
@@ -60,8 +63,9 @@ def run(
     try:
         rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
         node = make_node()
-    except (HnrError, RuntimeError) as error:  # rclpy's own errors are RuntimeErrors
-        logger.fatal(' '.join(str(error).split()))
+    # Most of rclpy's own errors are RuntimeErrors.
+    except (HnrError, ParameterException, RuntimeError) as error:
+        logger.fatal(_in_words(error))
         rclpy.try_shutdown()
         return 1
     try:
@@ -69,6 +73,14 @@ def run(
     finally:
         node.destroy_node()
         rclpy.try_shutdown()
+
+
+def _in_words(error: Exception) -> str:
+    """Return why a node could not be made, in one line."""
+    words = ' '.join(str(error).split())
+    if isinstance(error, rclpy_implementation.UnknownROSArgsError):
+        return f'unknown arguments after --ros-args: {words}'
+    return words
 
 
 def _spin(

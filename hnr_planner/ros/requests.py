@@ -7,7 +7,6 @@ is checked, planned on the newest map, and the path is held against the map that
 
 from collections.abc import Callable
 from dataclasses import dataclass
-import itertools
 import math
 import threading
 import time
@@ -221,9 +220,7 @@ def _map_changed(settings: Settings) -> Refusal:
 
 def _still_free(path: NDArray[np.float64], found_on: MapSnapshot, newer: MapSnapshot) -> bool:
     """Return whether a path found on one map is a path on a newer one."""
-    return newer.frame == found_on.frame and all(
-        newer.space.is_motion_valid(start, end) for start, end in itertools.pairwise(path)
-    )
+    return newer.frame == found_on.frame and newer.space.first_blocked_segment(path) is None
 
 
 def _plan(

@@ -26,7 +26,7 @@ class Summary:
 
 
 class Statistics:
-    """Counts reports; times are those of the last requests that were really planned."""
+    """Counts reports; times are those of the last requests that searched."""
 
     def __init__(self) -> None:
         self._outcomes: Counter[Outcome] = Counter()
@@ -37,7 +37,7 @@ class Statistics:
         """Add one report."""
         with self._lock:
             self._outcomes[report.outcome] += 1
-            if report.result is not None:
+            if report.result is not None and len(report.result.samples) > 0:
                 self._times.append(report.elapsed)
 
     def summary(self) -> Summary:

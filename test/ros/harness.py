@@ -49,11 +49,19 @@ SOON = 20.0
 """Longest time [s] that anything here may take to happen."""
 
 
-def until(condition: Callable[[], Any], what: str, timeout: float = SOON) -> Any:
-    """Return the first true value of `condition`, or fail saying `what` did not happen."""
+def until(
+    condition: Callable[[], Any], what: str | Callable[[], str], timeout: float = SOON
+) -> Any:
+    """
+    Return the first true value of `condition`, or fail saying `what` did not happen.
+
+    A callable is asked for its words when they are needed, so that they tell the end.
+    """
     deadline = time.monotonic() + timeout
     while not (value := condition()):
-        assert time.monotonic() < deadline, f'{what}: not within {timeout} s'
+        if time.monotonic() >= deadline:
+            words = what if isinstance(what, str) else what()
+            raise AssertionError(f'not within {timeout} s: {words}')
         time.sleep(0.01)
     return value
 
@@ -62,8 +70,11 @@ class NodeProcess:
     """A node in a process of its own; `log` is all that it has printed so far."""
 
     def __init__(self, module: str, log: Path, parameters: dict[str, Any], *arguments: str):
-        settings = [f'-p{name}:={_yaml(value)}' for name, value in parameters.items()]
-        settings = [part for setting in settings for part in ('-p', setting[2:])]
+        settings = [
+            word
+            for name, value in parameters.items()
+            for word in ('-p', f'{name}:={_yaml(value)}')
+        ]
         command = [sys.executable, '-m', f'hnr_planner.ros.{module}', '--ros-args', *settings]
         self._log = log
         with log.open('w') as output:
@@ -84,12 +95,12 @@ class NodeProcess:
         """Wait until `text` is on the log."""
         until(
             lambda: text in self.log or self.popen.poll() is not None,
-            f'"{text}" on the log:\n{self.log}',
+            lambda: f'"{text}" on the log:\n{self.log}',
             timeout,
         )
         assert text in self.log, f'ended before it said "{text}":\n{self.log}'
 
-    def end(self, *signals: signal.Signals, timeout: float = 5.0) -> int:
+    def end(self, *signals: signal.Signals, timeout: float = SOON) -> int:
         """Send signals, wait for the end and return the exit code."""
         for number in signals:
             self.popen.send_signal(number)
@@ -195,6 +206,7 @@ class Client:
         self.paths = self.listen(PathMessage, f'{planner}/path')
         self.clouds = self.listen(PointCloud2, f'{planner}/samples')
         self.markers = self.listen(MarkerArray, f'{planner}/markers')
+        self._health = self.listen(DiagnosticArray, '/diagnostics', QoSProfile(depth=10))
         self._map_publisher = self.node.create_publisher(OccupancyGrid, '/map', LATCHED)
         self._thread = threading.Thread(target=self._spin, daemon=True)
         self._thread.start()
@@ -257,6 +269,14 @@ class Client:
         """Publish a map."""
         self._map_publisher.publish(message)
 
+    def wait_for_running(self, searches: int) -> None:
+        """Wait until the node says that so many searches run, from now on."""
+        self._health.clear()
+        until(
+            lambda: any(_running(message) == searches for message in list(self._health)),
+            f'{searches} running searches',
+        )
+
     def cancel(self) -> Trigger.Response:
         """Cancel all running searches."""
         return self.call(Trigger, f'{self._planner}/cancel', Trigger.Request())
@@ -277,6 +297,11 @@ class Client:
             GetParameters, f'{self._planner}/get_parameters', GetParameters.Request(names=names)
         )
         return [parameter_value_to_python(value) for value in answer.values]
+
+
+def _running(message: DiagnosticArray) -> int:
+    """Return how many searches run, from a report of health."""
+    return int(next(item.value for item in message.status[0].values if item.key == 'running'))
 
 
 def stamp_of(message: Any) -> tuple[int, int]:

@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 import math
 from pathlib import Path
-from test.ros.harness import Client, node_process, NodeProcess, pose, until
+from test.ros.harness import Client, node_process, NodeProcess, pose, SOON, until
 
 from hnr_planner.maps import FREE, OccupancyMap, OCCUPIED, save_map
 from hnr_planner.ros.map_messages import grid_from_message
@@ -106,12 +106,18 @@ def test_planner_started_later_plans_on_it(client: Client, tmp_path: Path) -> No
         assert len(client.plan(pose(*start), pose(*goal)).poses) > 2
 
 
-@pytest.mark.parametrize(('name', 'words'), [('broken', 'resolution'), ('', 'yaml_filename')])
+@pytest.mark.parametrize(
+    ('name', 'words'),
+    [
+        ('broken', 'resolution'),
+        ('', '[map_source]: the parameter yaml_filename is empty: no map file is given\n'),
+    ],
+)
 def test_broken_file_at_the_start_is_one_line_and_exit_code_1(
     tmp_path: Path, files: dict[str, Path], name: str, words: str
 ) -> None:
     chosen = {'yaml_filename': files[name]} if name else {}
     with node_process('map_node', tmp_path / 'log', '[FATAL]', **chosen) as process:
-        assert process.popen.wait(5.0) == 1
-        (line,) = process.log.strip().splitlines()
+        assert process.popen.wait(SOON) == 1
+        (line,) = process.log.splitlines(keepends=True)
         assert words in line and 'Traceback' not in line

@@ -42,21 +42,27 @@ def test_map_survives_the_way_there_and_back() -> None:
     assert grid.frame == 'floor'
 
 
-@pytest.mark.parametrize('resolution', [0.05, 0.1, 0.025, 1.0, 0.03, 1e-3, 12.5])
+@pytest.mark.parametrize('resolution', [0.05, 0.1, 0.025, 1.0, 0.03, 1e-4, 12.5, 1000.0])
 def test_resolution_is_read_as_it_was_written(resolution: float) -> None:
     assert as_written(float(np.float32(resolution))) == resolution
+    assert grid_from_message(message(info__resolution=resolution)).resolution == resolution
 
 
 BAD_MAPS = {
     'no cells': {'info__width': 0},
     'width 3 x height 3': {'info__height': 3},
-    'resolution must be positive and finite, got 0': {'info__resolution': 0.0},
+    r'resolution must be in 0.0001\.\.1000 m, got 0': {'info__resolution': 0.0},
     'got -0.05': {'info__resolution': -0.05},
-    'resolution must be positive and finite, got nan': {'info__resolution': math.nan},
-    'resolution must be positive and finite, got inf': {'info__resolution': math.inf},
+    'got nan m': {'info__resolution': math.nan},
+    'got inf m': {'info__resolution': math.inf},
+    'got 1e-45 m': {'info__resolution': 1e-45},
+    'got 9.9e-05 m': {'info__resolution': 9.9e-5},
+    'got 1001.0 m': {'info__resolution': 1001.0},
     r'\(nan, -2': {'info__origin__position__x': math.nan},
+    r'-2.0, nan\)': {'info__origin__position__z': math.nan},
     r'\(1.0, inf': {'info__origin__position__y': math.inf},
     'norm above 0, got .*nan': {'info__origin__orientation__z': math.nan},
+    r'norm above 0, got \[nan': {'info__origin__orientation__x': math.nan},
     'level': {'info__origin__orientation__x': 0.5},
 }
 

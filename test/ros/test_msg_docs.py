@@ -74,6 +74,14 @@ def test_page_of_the_service_names_every_algorithm() -> None:
     assert all(f'`{name}`' in PAGES['plan'] for name in ALGORITHMS)
 
 
+def test_pages_of_the_other_services_lead_to_what_all_share() -> None:
+    fields = {*GetPlan.Request.get_fields_and_field_types()}
+    assert fields < {cells[0] for cells in rows(PAGES['plan'])}
+    for name in ('plan_hit_and_run', 'plan_rrt'):
+        assert '(plan.md)' in PAGES[name], name
+        assert not fields & {cells[0] for cells in rows(PAGES[name])}, name
+
+
 def in_graph(client: Client, node: str) -> set[tuple[str, str, str]]:
     """Return (kind, full name, type) of all that a node has."""
     ask = {

