@@ -19,7 +19,8 @@ from hnr_planner.core.planning.frontier import (
     empty_frontier,
     Frontier,
 )
-from hnr_planner.core.planning.search import NONE, Problem, reaches_goal, through, with_room
+from hnr_planner.core.planning.search import NONE, Problem, reaches_goal, with_room
+from hnr_planner.core.planning.two_trees import TwoTreeSearch
 from hnr_planner.core.sampling.walks import draw_between, draw_direction
 from hnr_planner.core.spaces.primitives import component, leave, sees
 import numpy as np
@@ -69,19 +70,11 @@ class HitAndRunConnect:
 
 
 @dataclass
-class HitAndRunConnectSearch:
-    """
-    Two trees under way; a transition is one step of one of them, in turn.
+class HitAndRunConnectSearch(TwoTreeSearch):
+    """Two trees under way; a transition is one step of one of them, in turn."""
 
-    A goal region whose centre cannot be reached has no second tree: the first has to find into it.
-    """
-
-    problem: Problem
-    rng: np.random.Generator
-    iterations: int = field(init=False, default=0)
     _redraws: int = field(init=False, default=0)
     _trees: Trees = field(init=False)
-    _ends: tuple[int, int] = field(init=False, default=(NONE, NONE))
 
     def __post_init__(self) -> None:
         problem, dim = self.problem, len(self.problem.start)
@@ -95,29 +88,10 @@ class HitAndRunConnectSearch:
         _plant(problem, self._trees)
 
     @property
-    def solved(self) -> bool:
-        """Whether the trees are joined, or the first has come into the goal region."""
-        return self._ends[0] != NONE
-
-    @property
-    def samples(self) -> Floats:
-        """The vertices (k, dim) of both trees."""
-        return self._trees.vertices[: self._n_vertices]
-
-    @property
-    def parents(self) -> NDArray[np.int64]:
-        """Index (k,) of the vertex that each was reached from; -1 for the two roots."""
-        return self._trees.parents[: self._n_vertices]
-
-    @property
-    def _n_vertices(self) -> int:
+    def _table(self) -> tuple[Floats, NDArray[np.int64]]:
         in_first, in_second = self._trees.sizes.tolist()
-        return in_first + in_second
-
-    @property
-    def path(self) -> Floats:
-        """Return the branch of each tree that leads to where they met."""
-        return through(self.problem, self.samples, self.parents, self._ends)
+        rows = in_first + in_second
+        return self._trees.vertices[:rows], self._trees.parents[:rows]
 
     @property
     def counts(self) -> dict[str, int]:
@@ -128,7 +102,7 @@ class HitAndRunConnectSearch:
         """Take at most ``n_iterations`` further steps."""
         if self.solved:
             return
-        rows = self._n_vertices + n_iterations
+        rows = len(self.samples) + n_iterations
         trees = self._trees
         self._trees = trees._replace(
             vertices=with_room(trees.vertices, rows),

@@ -12,7 +12,8 @@ from hnr_planner.core.checks import Floats
 from hnr_planner.core.kernels import kernel
 from hnr_planner.core.planning.nearest import BoxTree, empty_box_tree, grown, insert, nearest
 from hnr_planner.core.planning.rrt import draw_in_box, extend, PROPOSALS_PER_ITERATION
-from hnr_planner.core.planning.search import NONE, Problem, reaches_goal, through, with_room
+from hnr_planner.core.planning.search import NONE, Problem, reaches_goal, with_room
+from hnr_planner.core.planning.two_trees import TwoTreeSearch
 from hnr_planner.core.spaces.primitives import component, contains, sees
 import numpy as np
 from numpy.typing import NDArray
@@ -53,20 +54,12 @@ class RRTConnect:
 
 
 @dataclass
-class RRTConnectSearch:
-    """
-    Two trees under way; a transition is one proposal inside the space and what it leads to.
+class RRTConnectSearch(TwoTreeSearch):
+    """Two trees under way; a transition is one proposal inside the space and what it leads to."""
 
-    A goal region whose centre cannot be reached has no second tree: the first has to find into it.
-    """
-
-    problem: Problem
-    rng: np.random.Generator
-    iterations: int = field(init=False, default=0)
     _rejected: int = field(init=False, default=0)
     _trees: Trees = field(init=False)
     _n_trees: int = field(init=False)
-    _ends: tuple[int, int] = field(init=False, default=(NONE, NONE))
 
     def __post_init__(self) -> None:
         problem = self.problem
@@ -80,24 +73,9 @@ class RRTConnectSearch:
         self._n_trees = _plant(problem, self._trees)
 
     @property
-    def solved(self) -> bool:
-        """Whether the trees have met, or the first has come into the goal region."""
-        return self._ends[0] != NONE
-
-    @property
-    def samples(self) -> Floats:
-        """The vertices (k, dim) of both trees."""
-        return self._trees.vertices[: self._trees.size[0]]
-
-    @property
-    def parents(self) -> NDArray[np.int64]:
-        """Index (k,) of the vertex that each was extended from; -1 for the roots."""
-        return self._trees.parents[: self._trees.size[0]]
-
-    @property
-    def path(self) -> Floats:
-        """Return the branch of each tree that leads to where they met."""
-        return through(self.problem, self.samples, self.parents, self._ends)
+    def _table(self) -> tuple[Floats, NDArray[np.int64]]:
+        rows = int(self._trees.size[0])
+        return self._trees.vertices[:rows], self._trees.parents[:rows]
 
     @property
     def counts(self) -> dict[str, int]:

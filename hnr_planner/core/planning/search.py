@@ -115,19 +115,6 @@ def branch(samples: Floats, parents: NDArray[np.int64], k: int) -> Floats:
     return samples[rows[::-1]]
 
 
-def through(
-    problem: Problem, samples: Floats, parents: NDArray[np.int64], ends: tuple[int, int]
-) -> Floats:
-    """
-    Return the path (m, dim) through where two trees see each other.
-
-    ``ends`` are the vertices that do, that of the start's tree first. With NONE for the second
-    there is one tree only, and the first vertex reaches the goal.
-    """
-    ahead, back = (branch(samples, parents, end) for end in ends)
-    return np.concatenate([ahead, back[::-1]]) if len(back) else to_goal(problem, ahead)
-
-
 def to_goal(problem: Problem, points: Floats) -> Floats:
     """Return ``points`` (m, dim), whose last one reaches the goal, with an exact goal added."""
     return points if problem.goal_radius > 0.0 else np.vstack([points, problem.goal])
