@@ -12,6 +12,7 @@ from typing import NamedTuple
 from hnr_planner.core.checks import Floats
 from hnr_planner.core.kernels import kernel
 from hnr_planner.core.planning.search import NONE
+from hnr_planner.core.streams import uniform
 import numpy as np
 from numpy.typing import NDArray
 
@@ -60,21 +61,22 @@ class Frontier(NamedTuple):
     n_filled: NDArray[np.int64]
 
 
-def empty_frontier(lower: Floats, upper: Floats, clearance: float) -> Frontier:
+@kernel
+def empty_frontier(lower, upper, clearance):
     """Return the frontier of two trees without vertices, for a space of this typical clearance."""
-    extent = (upper - lower)[:2]
-    side = max(SIDE * clearance, float(extent.max()) / BINS_MAX)
-    columns, rows = (int(length / side) + 3 for length in extent)
+    width, height = upper[0] - lower[0], upper[1] - lower[1]
+    side = max(SIDE * clearance, max(width, height) / BINS_MAX)
+    columns, rows = int(width / side) + 3, int(height / side) + 3
     shape = (2, rows * columns)
     return Frontier(
-        lower=lower,
-        side=side,
-        columns=columns,
-        newest=np.full(shape, NONE, dtype=np.int32),
-        first=np.full((2, USES_MAX + 1), NONE, dtype=np.int32),
-        following=np.empty(shape, dtype=np.int32),
-        filled=np.empty(shape, dtype=np.int32),
-        n_filled=np.zeros(2, dtype=np.int64),
+        lower,
+        side,
+        columns,
+        np.full(shape, NONE, dtype=np.int32),
+        np.full((2, USES_MAX + 1), NONE, dtype=np.int32),
+        np.empty(shape, dtype=np.int32),
+        np.empty(shape, dtype=np.int32),
+        np.zeros(2, dtype=np.int64),
     )
 
 
@@ -101,8 +103,8 @@ def add_to_bin(frontier, tree, x, k):
 @kernel
 def choose_vertex(frontier, tree, rng):
     """Choose the vertex of a tree to grow from."""
-    if rng.random() < ANY:
-        at = frontier.filled[tree, math.floor(frontier.n_filled[tree] * rng.random())]
+    if uniform(rng) < ANY:
+        at = frontier.filled[tree, math.floor(frontier.n_filled[tree] * uniform(rng))]
         return frontier.newest[tree, at]
     uses = 0
     while frontier.first[tree, uses] == NONE:

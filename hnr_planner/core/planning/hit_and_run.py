@@ -8,10 +8,12 @@ on a chord, so the chain itself is the path: it needs neither a sampler of the s
 from dataclasses import dataclass, field
 from typing import ClassVar
 
+from hnr_planner.core.borrowed import borrowed
 from hnr_planner.core.checks import Floats
 from hnr_planner.core.kernels import kernel
 from hnr_planner.core.planning.search import Problem, reaches_goal, to_goal, with_room
 from hnr_planner.core.sampling.walks import hit_and_run_step
+from hnr_planner.core.streams import Stream
 import numpy as np
 from numpy.typing import NDArray
 
@@ -22,7 +24,7 @@ class HitAndRun:
 
     name: ClassVar[str] = 'hit_and_run'
 
-    def start(self, problem: Problem, rng: np.random.Generator) -> 'HitAndRunSearch':
+    def start(self, problem: Problem, rng: Stream) -> 'HitAndRunSearch':
         """Start a chain at the problem's start."""
         return HitAndRunSearch(problem, rng)
 
@@ -32,7 +34,7 @@ class HitAndRunSearch:
     """A chain under way; a transition is one step."""
 
     problem: Problem
-    rng: np.random.Generator
+    rng: Stream
     solved: bool = field(init=False, default=False)
     redraws: int = field(init=False, default=0)
     _chain: Floats = field(init=False)
@@ -81,6 +83,7 @@ class HitAndRunSearch:
 @kernel
 def _walk(problem, rng, chain, length, end):
     """Walk on from the last of ``length`` samples until the goal or ``end`` samples."""
+    problem, rng, chain = borrowed(problem), borrowed(rng), borrowed(chain)
     redraws = 0
     for k in range(length, end):
         redraws += hit_and_run_step(problem.space, chain[k - 1], rng, chain[k])

@@ -11,6 +11,7 @@ other tree among the vertices around it and at one anywhere.
 from dataclasses import dataclass, field
 from typing import ClassVar, NamedTuple
 
+from hnr_planner.core.borrowed import borrowed
 from hnr_planner.core.checks import Floats
 from hnr_planner.core.kernels import kernel
 from hnr_planner.core.planning.frontier import (
@@ -23,6 +24,7 @@ from hnr_planner.core.planning.search import NONE, Problem, reaches_goal, with_r
 from hnr_planner.core.planning.two_trees import TwoTreeSearch
 from hnr_planner.core.sampling.walks import draw_between, draw_direction
 from hnr_planner.core.spaces.primitives import component, leave, sees
+from hnr_planner.core.streams import Stream, uniform
 import numpy as np
 from numpy.typing import NDArray
 
@@ -30,6 +32,8 @@ from numpy.typing import NDArray
 #: behind it at least: the best of 1 to 6 and of 0 to .9 on building maps and spirals.
 RAYS = 3
 INNER = 0.7
+#: Vertices that the table has room for at first.
+FIRST_ROWS = 128
 
 
 class Trees(NamedTuple):
@@ -48,6 +52,8 @@ class Trees(NamedTuple):
         Vertices of each tree.
     frontier : Frontier
         Where each tree should grow.
+    directions : (2, dim)
+        Room for a step to work in.
 
     """
 
@@ -56,6 +62,7 @@ class Trees(NamedTuple):
     members: NDArray[np.int64]
     sizes: NDArray[np.int64]
     frontier: Frontier
+    directions: Floats
 
 
 @dataclass(frozen=True)
@@ -64,7 +71,7 @@ class HitAndRunConnect:
 
     name: ClassVar[str] = 'hit_and_run_connect'
 
-    def start(self, problem: Problem, rng: np.random.Generator) -> 'HitAndRunConnectSearch':
+    def start(self, problem: Problem, rng: Stream) -> 'HitAndRunConnectSearch':
         """Start a tree at each end."""
         return HitAndRunConnectSearch(problem, rng)
 
@@ -75,22 +82,14 @@ class HitAndRunConnectSearch(TwoTreeSearch):
 
     _redraws: int = field(init=False, default=0)
     _trees: Trees = field(init=False)
+    _n_roots: int = field(init=False)
 
     def __post_init__(self) -> None:
-        problem, dim = self.problem, len(self.problem.start)
-        self._trees = Trees(
-            vertices=np.empty((2, dim)),
-            parents=np.empty(2, dtype=np.int64),
-            members=np.empty((2, 2), dtype=np.int64),
-            sizes=np.zeros(2, dtype=np.int64),
-            frontier=empty_frontier(problem.lower, problem.upper, problem.clearance),
-        )
-        _plant(problem, self._trees)
+        self._trees, self._n_roots = _plant(self.problem)
 
     @property
     def _table(self) -> tuple[Floats, NDArray[np.int64]]:
-        in_first, in_second = self._trees.sizes.tolist()
-        rows = in_first + in_second
+        rows = self._n_roots + self.iterations
         return self._trees.vertices[:rows], self._trees.parents[:rows]
 
     @property
@@ -102,53 +101,68 @@ class HitAndRunConnectSearch(TwoTreeSearch):
         """Take at most ``n_iterations`` further steps."""
         if self.solved:
             return
-        rows = len(self.samples) + n_iterations
-        trees = self._trees
-        self._trees = trees._replace(
-            vertices=with_room(trees.vertices, rows),
-            parents=with_room(trees.parents, rows),
-            members=with_room(trees.members, rows),
-        )
+        self._make_room(self._n_roots + self.iterations + n_iterations)
         self._ends, taken, redraws = _grow(
             self.problem, self._trees, self.rng, self.iterations, n_iterations
         )
         self.iterations += taken
         self._redraws += redraws
 
+    def _make_room(self, rows: int) -> None:
+        trees = self._trees
+        if len(trees.parents) < rows:
+            self._trees = trees._replace(
+                vertices=with_room(trees.vertices, rows),
+                parents=with_room(trees.parents, rows),
+                members=with_room(trees.members, rows),
+            )
+
 
 @kernel
-def _plant(problem, trees):
-    """Plant a root at the start, and one at a goal that it can reach."""
+def _plant(problem):
+    """Plant a root at the start, and one at a goal that it can reach: (trees, roots)."""
+    trees = Trees(
+        np.empty((FIRST_ROWS, len(problem.start))),
+        np.empty(FIRST_ROWS, dtype=np.int64),
+        np.empty((FIRST_ROWS, 2), dtype=np.int64),
+        np.zeros(2, dtype=np.int64),
+        empty_frontier(problem.lower, problem.upper, problem.clearance),
+        np.empty((2, len(problem.start))),
+    )
     trees.vertices[0] = problem.start
     _add(trees, 0, NONE)
-    if component(problem.space, problem.goal) == component(problem.space, problem.start):
-        trees.vertices[1] = problem.goal
-        _add(trees, 1, NONE)
+    if component(problem.space, problem.goal) != component(problem.space, problem.start):
+        return trees, 1
+    trees.vertices[1] = problem.goal
+    _add(trees, 1, NONE)
+    return trees, 2
 
 
 @kernel
 def _grow(problem, trees, rng, turn, n_iterations):
     """Grow the trees in turn: ((row at the start's tree, row at the goal's), steps, redraws)."""
+    problem, trees, rng = borrowed(problem), borrowed(trees), borrowed(rng)
     n_trees = 2 if trees.sizes[1] > 0 else 1
     redraws = 0
     for i in range(n_iterations):
         tree = (turn + i) % n_trees
         row = trees.sizes[0] + trees.sizes[1]
         parent = choose_vertex(trees.frontier, tree, rng)
-        redraws += _step(problem.space, trees.vertices[parent], rng, trees.vertices[row])
+        x, y = trees.vertices[parent], trees.vertices[row]
+        redraws += _step(problem.space, x, rng, trees.directions, y)
         at = _add(trees, tree, parent)
         met = _meet(problem.space, trees, row, at, 1 - tree, rng)
         if met != NONE:
             return ((row, met) if tree == 0 else (met, row)), i + 1, redraws
-        if tree == 0 and problem.goal_radius > 0.0 and reaches_goal(problem, trees.vertices[row]):
+        if tree == 0 and problem.goal_radius > 0.0 and reaches_goal(problem, y):
             return (row, NONE), i + 1, redraws
     return (NONE, NONE), n_iterations, redraws
 
 
 @kernel
-def _step(space, x, rng, y):
+def _step(space, x, rng, directions, y):
     """Step along the longest of a few uniform rays, to a uniform point of its outer part."""
-    u, best, longest = np.empty(len(x)), np.empty(len(x)), 0.0
+    u, best, longest = directions[0], directions[1], 0.0
     for _ in range(RAYS):
         draw_direction(rng, u)
         reach = leave(space, x, u, 0.0, np.inf)
@@ -179,5 +193,5 @@ def _meet(space, trees, row, at, other, rng):
             k = newest[other, at + below + beside]
             if k != NONE and sees(space, trees.vertices[row], trees.vertices[k]):
                 return k
-    k = trees.members[int(trees.sizes[other] * rng.random()), other]
+    k = trees.members[int(trees.sizes[other] * uniform(rng)), other]
     return k if sees(space, trees.vertices[row], trees.vertices[k]) else NONE

@@ -155,7 +155,7 @@ def _answer_without_search(
     )
 
 
-#: What generators are for.
+#: What random streams are for.
 SEARCH, SHORTEN = 0, 1
 
 
@@ -177,7 +177,7 @@ def _attempt(request: Request, number: int, limits: Limits, began: float) -> _At
     first = FirstSolution(time.perf_counter() - began, path_length(path))
     if not request.simplify or len(path) == 2:
         return _Attempt(status, search, path, first.length, first)
-    path = shorten(request.space, path, request.generator(number, SHORTEN), limits)
+    path = shorten(request.space, path, request.stream(number, SHORTEN), limits)
     return _Attempt(status, search, path, path_length(path), first)
 
 
@@ -189,11 +189,11 @@ def _search(request: Request, number: int, limits: Limits) -> tuple[PlannerStatu
     search begins again.
     """
     for salt in itertools.count():
-        search = request.planner.start(request.problem, request.generator(number, SEARCH, salt))
+        search = request.planner.start(request.problem, request.stream(number, SEARCH, salt))
         status = limits.run(search)
         if status is PlannerStatus.SOLVED:
             path = _path_found(request, search)
-            if request.space.first_blocked_segment(path) is None:
+            if request.space.is_path_free(path):
                 return status, search, path
             status = limits.stop() or status
         if status is not PlannerStatus.SOLVED:
@@ -206,7 +206,7 @@ def _path_found(request: Request, search: Search) -> Floats:
     found = search.path
     path = request.space.from_kernel(found)
     path[0] = request.start
-    if np.array_equal(found[-1], request.problem.goal):
+    if found[-1].tolist() == request.problem.goal.tolist():
         path[-1] = request.goal
     return path
 
@@ -242,7 +242,7 @@ def _compile(request: Request) -> None:
     space, kinds = request.space, (type(request.space.data), type(request.planner))
     if kinds in _compiled:
         return
-    search = request.planner.start(request.problem, np.random.default_rng(0))
+    search = request.planner.start(request.problem, request.stream())
     search.advance(0)
     without_search(request)
     ends = np.stack([request.start, request.goal])

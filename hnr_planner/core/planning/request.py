@@ -10,7 +10,7 @@ from hnr_planner.core.planning.result import PlannerStatus
 from hnr_planner.core.planning.search import Planner, Problem, reaches_goal
 from hnr_planner.core.spaces.primitives import component
 from hnr_planner.core.spaces.space import Space
-import numpy as np
+from hnr_planner.core.streams import Stream, stream
 from numpy.typing import ArrayLike
 
 
@@ -47,10 +47,9 @@ class Request:
     seed: int
     problem: Problem
 
-    def generator(self, *purpose: int) -> np.random.Generator:
-        """Return the generator for one purpose: each has its own, all follow from the seed."""
-        sequence = np.random.SeedSequence(self.seed, spawn_key=purpose)
-        return np.random.Generator(np.random.PCG64(sequence))
+    def stream(self, *purpose: int) -> Stream:
+        """Return the random stream for one purpose: each has its own, all follow from the seed."""
+        return stream(self.seed, *purpose)
 
 
 def check_request(

@@ -16,6 +16,7 @@ from hnr_planner.core.planning.lengths import norm
 from hnr_planner.core.planning.nearest import BoxTree, empty_box_tree, grown, insert, nearest
 from hnr_planner.core.planning.search import branch, Problem, reaches_goal, to_goal, with_room
 from hnr_planner.core.spaces.primitives import contains, contains_around, leave
+from hnr_planner.core.streams import Stream, uniform
 import numpy as np
 from numpy.typing import NDArray
 
@@ -46,7 +47,7 @@ class RRT:
             raise RequestError('max_step must be above 0, got 0.0')
         object.__setattr__(self, 'max_step', max_step)
 
-    def start(self, problem: Problem, rng: np.random.Generator) -> 'RRTSearch':
+    def start(self, problem: Problem, rng: Stream) -> 'RRTSearch':
         """Start a tree at the problem's start."""
         return RRTSearch(problem, rng, self.max_step / problem.scale)
 
@@ -56,7 +57,7 @@ class RRTSearch:
     """A tree under way; a transition is one proposal inside the space and its extension."""
 
     problem: Problem
-    rng: np.random.Generator
+    rng: Stream
     max_step: float
     solved: bool = field(init=False, default=False)
     iterations: int = field(init=False, default=0)
@@ -144,7 +145,7 @@ def _grow(problem, max_step, rng, vertices, parents, n_vertices, tree, n_iterati
 def draw_in_box(lower, upper, rng, x):
     """Draw ``x`` uniformly from a box."""
     for i in range(len(x)):
-        x[i] = lower[i] + (upper[i] - lower[i]) * rng.random()
+        x[i] = lower[i] + (upper[i] - lower[i]) * uniform(rng)
 
 
 @kernel

@@ -8,6 +8,7 @@ other tree towards the end of that extension, as far as it sees; they meet when 
 from dataclasses import dataclass, field
 from typing import ClassVar, NamedTuple
 
+from hnr_planner.core.borrowed import borrowed
 from hnr_planner.core.checks import Floats
 from hnr_planner.core.kernels import kernel
 from hnr_planner.core.planning.nearest import BoxTree, empty_box_tree, grown, insert, nearest
@@ -15,6 +16,7 @@ from hnr_planner.core.planning.rrt import draw_in_box, extend, PROPOSALS_PER_ITE
 from hnr_planner.core.planning.search import NONE, Problem, reaches_goal, with_room
 from hnr_planner.core.planning.two_trees import TwoTreeSearch
 from hnr_planner.core.spaces.primitives import component, contains, sees
+from hnr_planner.core.streams import Stream
 import numpy as np
 from numpy.typing import NDArray
 
@@ -48,7 +50,7 @@ class RRTConnect:
 
     name: ClassVar[str] = 'rrt_connect'
 
-    def start(self, problem: Problem, rng: np.random.Generator) -> 'RRTConnectSearch':
+    def start(self, problem: Problem, rng: Stream) -> 'RRTConnectSearch':
         """Start a tree at each end."""
         return RRTConnectSearch(problem, rng)
 
@@ -120,6 +122,7 @@ def _plant(problem, trees):
 @kernel
 def _grow(problem, trees, n_trees, rng, turn, n_iterations):
     """Grow the trees in turn: (the ends that met, proposals handled, proposals rejected)."""
+    problem, trees, rng = borrowed(problem), borrowed(trees), borrowed(rng)
     proposal, handled, rejected = np.empty(len(problem.start)), 0, 0
     for _ in range(PROPOSALS_PER_ITERATION * n_iterations):
         if handled == n_iterations:

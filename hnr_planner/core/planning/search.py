@@ -12,6 +12,7 @@ from typing import Any, NamedTuple, Protocol
 from hnr_planner.core.checks import Floats
 from hnr_planner.core.kernels import kernel
 from hnr_planner.core.spaces.primitives import sees
+from hnr_planner.core.streams import Stream
 import numpy as np
 from numpy.typing import NDArray
 
@@ -102,17 +103,21 @@ class Planner(Protocol):
     def name(self) -> str:
         """Name in ``plan``'s table of algorithms."""
 
-    def start(self, problem: Problem, rng: np.random.Generator) -> Search:
+    def start(self, problem: Problem, rng: Stream) -> Search:
         """Start a search."""
 
 
-def branch(samples: Floats, parents: NDArray[np.int64], k: int) -> Floats:
-    """Return the samples (m, dim) from the root of sample ``k`` to ``k``, along the parents."""
-    rows = []
-    while k >= 0:
-        rows.append(k)
-        k = int(parents[k])
-    return samples[rows[::-1]]
+@kernel
+def branch(samples, parents, k):
+    """Return the samples (m, dim) from the root of sample ``k`` to ``k``; (0, dim) for NONE."""
+    length, row = 0, k
+    while row != NONE:
+        length, row = length + 1, parents[row]
+    points, row = np.empty((length, samples.shape[1])), k
+    for i in range(length - 1, -1, -1):
+        points[i] = samples[row]
+        row = parents[row]
+    return points
 
 
 def to_goal(problem: Problem, points: Floats) -> Floats:

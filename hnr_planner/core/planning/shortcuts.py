@@ -2,51 +2,57 @@
 Ways to shorten a path by visibility, as kernels: each only ever shortens, and counts its tests.
 
 ``skip``: a vertex is followed by the last one that it sees. ``tighten``: random points of the path
-are joined; each vertex is pulled towards the line between its neighbours until something is in the
-way, and what corner is left there is cut off, so that the path comes to lie taut around obstacles.
+are joined; each vertex slides along its two segments until an obstacle is in the way, and what
+corner is left there is cut off, so that the path comes to lie taut around obstacles.
 """
 
+from hnr_planner.core.borrowed import borrowed
 from hnr_planner.core.kernels import kernel
 from hnr_planner.core.planning.lengths import norm
 from hnr_planner.core.spaces.primitives import sees
+from hnr_planner.core.streams import uniform
 import numpy as np
 
+#: Looks from one vertex, each halfway to the one before, at most.
+LOOKS_MAX = 64
 #: Random pairs of points that ``tighten`` tries to join, for each segment of the path.
 TRIES = 5
-#: Halvings of the way on which a vertex is pulled or its corner cut.
+#: Halvings of the way on which a vertex slides or its corner is cut.
 HALVINGS = 12
 #: A corner is cut for a gain of more than this part of its two segments.
 LEAST_CUT = 1e-3
 
 
 @kernel
-def skip(space, points, kept, n_kept, looked_at, tests_max):
+def skip(space, points, kept, n_kept, every, tests_max):
     """
     Go on from the last vertex kept to the last one that it sees, and so on.
 
-    Of a long path a vertex looks at ``looked_at`` others, evenly spread over what is ahead; with
-    too few tests left for all of them it does not begin. Returns (vertices kept, tests).
+    A vertex looks at ``every`` one after it, the last one first, or only at the last one, the one
+    halfway there, halfway to that, ...; with too few tests left for all of them it does not begin.
+    Returns (vertices kept, tests).
     """
+    space, points = borrowed(space), borrowed(points)
     last, tests = len(points) - 1, 0
     while kept[n_kept - 1] < last:
         at = kept[n_kept - 1]
-        stride = 1 + (last - at) // looked_at
-        if tests + (last - at) // stride > tests_max:
+        ahead = last - at
+        if tests + (ahead if every else LOOKS_MAX) > tests_max:
             break
-        found = at + 1
-        for candidate in range(last, at + 1, -stride):
+        while ahead > 1:
             tests += 1
-            if sees(space, points[at], points[candidate]):
-                found = candidate
+            if sees(space, points[at], points[at + ahead]):
                 break
-        kept[n_kept] = found
+            ahead = ahead - 1 if every else ahead // 2
+        kept[n_kept] = at + ahead
         n_kept += 1
     return n_kept, tests
 
 
 @kernel
 def tighten(space, points, margin, rng, tests_max):
-    """Join random points of the path, then pull and cut at each vertex: (path, tests)."""
+    """Join random points of the path, then slide and cut each vertex: (path, tests)."""
+    space, rng = borrowed(space), borrowed(rng)
     tests = 0
     for _ in range(TRIES * (len(points) - 1)):
         if tests + 3 > tests_max:
@@ -59,7 +65,8 @@ def tighten(space, points, margin, rng, tests_max):
             points = _replaced(points, k, points[:0])
             tests += 1
             continue
-        _pull(space, points[k - 1], points[k], points[k + 1], margin)
+        _slide(space, points[k - 1], points[k], points[k + 1], margin)
+        _slide(space, points[k + 1], points[k], points[k - 1], margin)
         corner = _cut(space, points[k - 1], points[k], points[k + 1], margin)
         tests += 1 + 3 * HALVINGS
         points = _replaced(points, k, corner)
@@ -68,20 +75,18 @@ def tighten(space, points, margin, rng, tests_max):
 
 
 @kernel
-def _pull(space, a, x, b, margin):
-    """Pull ``x`` towards the segment a-b to ``margin`` before it would lose sight of an end."""
-    way = _nearest_on_segment(x, a, b) - x
+def _slide(space, a, x, b, margin):
+    """Slide ``x`` towards ``a`` to ``margin`` before it would lose sight of ``b``."""
     free, blocked = 0.0, 1.0
     for _ in range(HALVINGS):
         middle = (free + blocked) / 2.0
-        y = x + middle * way
-        if sees(space, a, y) and sees(space, y, b):
+        if sees(space, x + middle * (a - x), b):
             free = middle
         else:
             blocked = middle
-    length = norm(way)
+    length = norm(a - x)
     if free * length > margin:
-        x += (free - margin / length) * way
+        x += (free - margin / length) * (a - x)
 
 
 @kernel
@@ -113,22 +118,10 @@ def _replaced(points, k, others):
 
 
 @kernel
-def _nearest_on_segment(x, a, b):
-    """Point of the segment a-b that is nearest to ``x``."""
-    along, squared = 0.0, 0.0
-    for i in range(len(x)):
-        along += (x[i] - a[i]) * (b[i] - a[i])
-        squared += (b[i] - a[i]) ** 2
-    if squared == 0.0:
-        return a.copy()
-    return a + min(max(along / squared, 0.0), 1.0) * (b - a)
-
-
-@kernel
 def _join_two(space, points, rng):
     """Try to join two random points of the path, uniform along its length, directly."""
     along = _lengths_along(points)
-    s, t = along[-1] * rng.random(), along[-1] * rng.random()
+    s, t = along[-1] * uniform(rng), along[-1] * uniform(rng)
     i, j = _segment_at(along, min(s, t)), _segment_at(along, max(s, t))
     if i == j:
         return points

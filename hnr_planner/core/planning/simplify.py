@@ -14,6 +14,7 @@ from hnr_planner.core.planning.lengths import path_length
 from hnr_planner.core.planning.limits import Limits
 from hnr_planner.core.planning.shortcuts import skip, tighten
 from hnr_planner.core.spaces.space import Space
+from hnr_planner.core.streams import Stream, stream
 import numpy as np
 from numpy.typing import ArrayLike
 
@@ -22,10 +23,14 @@ from numpy.typing import ArrayLike
 TESTS_MAX = 100_000
 TESTS_IN_A_BATCH = 2000
 TESTS_FOR_A_VERTEX = 60
-#: Vertices of a long path that one vertex looks at, in one pass after the other.
-LOOKED_AT = (32, 256)
+#: Paths with more vertices are first passed over with a few looks from each, again and again while
+#: that leaves less than this part of them.
+MANY = 256
+WORTHWHILE = 0.8
 #: Rounds end with one that gains less than this part of the length.
 LEAST_GAIN = 1e-3
+#: What gains less than this is the same path, rounded.
+SHORTER = 1.0 - 1e-12
 
 
 def simplify(
@@ -68,8 +73,7 @@ def simplify(
     seconds = math.inf if time_limit is None else check_number('time_limit', time_limit, 0.0)
     compile_shorten(space, path)
     limits = Limits(time.perf_counter() + seconds)
-    rng = np.random.default_rng(check_seed(seed))
-    return shorten(space, path, rng, limits, max_iterations)
+    return shorten(space, path, stream(check_seed(seed)), limits, max_iterations)
 
 
 def check_path(space: Space, path: ArrayLike) -> Floats:
@@ -89,7 +93,7 @@ def check_path(space: Space, path: ArrayLike) -> Floats:
 def shorten(
     space: Space,
     path: Floats,
-    rng: np.random.Generator,
+    rng: Stream,
     limits: Limits,
     tests_max: int = TESTS_MAX,
 ) -> Floats:
@@ -104,7 +108,7 @@ def shorten(
         gain, length = length - path_length(points), path_length(points)
     shorter = space.from_kernel(points)
     shorter[0], shorter[-1] = path[0], path[-1]
-    if path_length(shorter) < path_length(path) and space.first_blocked_segment(shorter) is None:
+    if path_length(shorter) < SHORTER * path_length(path) and space.is_path_free(shorter):
         return shorter
     return path
 
@@ -113,24 +117,32 @@ def _skip_vertices(
     space: Space, points: Floats, limits: Limits, tests_max: int
 ) -> tuple[Floats, int]:
     """Keep only vertices that follow each other as the last one seen: (path, tests)."""
-    tests = 0
-    for looked_at in (*LOOKED_AT, len(points)):
-        kept, n_kept, last = np.zeros(len(points), dtype=np.int64), 1, len(points) - 1
-        began = 0
-        while began < n_kept and kept[n_kept - 1] < last and limits.stop() is None:
-            began = n_kept
-            batch = min(max(TESTS_IN_A_BATCH, len(points)), tests_max - tests)
-            n_kept, used = skip(space.data, points, kept, n_kept, looked_at, batch)
-            tests += used
-        rest = np.arange(kept[n_kept - 1] + 1, len(points))
-        points = points[np.concatenate([kept[:n_kept], rest])]
-        if last <= looked_at:
-            break
-    return points, tests
+    tests, before = 0, math.inf
+    while MANY < len(points) < WORTHWHILE * before:
+        before = len(points)
+        points, used = _pass_over(space, points, False, limits, tests_max - tests)
+        tests += used
+    points, used = _pass_over(space, points, True, limits, tests_max - tests)
+    return points, tests + used
+
+
+def _pass_over(
+    space: Space, points: Floats, every: bool, limits: Limits, tests_max: int
+) -> tuple[Floats, int]:
+    """Skip along all of a path, within limits: (path, tests)."""
+    kept, n_kept, last = np.zeros(len(points), dtype=np.int64), 1, len(points) - 1
+    began, tests = 0, 0
+    while began < n_kept and kept[n_kept - 1] < last and limits.stop() is None:
+        began = n_kept
+        batch = min(max(TESTS_IN_A_BATCH, len(points)), tests_max - tests)
+        n_kept, used = skip(space.data, points, kept, n_kept, every, batch)
+        tests += used
+    rest = np.arange(kept[n_kept - 1] + 1, len(points))
+    return points[np.concatenate([kept[:n_kept], rest])], tests
 
 
 def compile_shorten(space: Space, points: Floats) -> None:
     """Compile what ``shorten`` runs on this kind of space, without doing anything."""
-    skip(space.data, points, np.zeros(1, dtype=np.int64), 1, 1, 0)
-    tighten(space.data, points[:1], space.margin, np.random.default_rng(0), 0)
+    skip(space.data, points, np.zeros(1, dtype=np.int64), 1, True, 0)
+    tighten(space.data, points[:1], space.margin, stream(0), 0)
     path_length(points)

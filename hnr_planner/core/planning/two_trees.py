@@ -9,7 +9,9 @@ from abc import ABC, abstractmethod
 from dataclasses import dataclass, field
 
 from hnr_planner.core.checks import Floats
+from hnr_planner.core.kernels import kernel
 from hnr_planner.core.planning.search import branch, NONE, Problem, to_goal
+from hnr_planner.core.streams import Stream
 import numpy as np
 from numpy.typing import NDArray
 
@@ -25,7 +27,7 @@ class TwoTreeSearch(ABC):
     ----------
     problem : Problem
         What is searched for.
-    rng : numpy.random.Generator
+    rng : Stream
         Where every draw comes from.
     iterations : int
         Transitions handled.
@@ -33,7 +35,7 @@ class TwoTreeSearch(ABC):
     """
 
     problem: Problem
-    rng: np.random.Generator
+    rng: Stream
     iterations: int = field(init=False, default=0)
     #: The vertices that see each other, the start tree's first; (k, NONE) for one in the region.
     _ends: tuple[int, int] = field(init=False, default=(NONE, NONE))
@@ -61,5 +63,12 @@ class TwoTreeSearch(ABC):
     @property
     def path(self) -> Floats:
         """Return the branch of each tree that leads to where they met."""
-        ahead, back = (branch(*self._table, end) for end in self._ends)
-        return np.concatenate([ahead, back[::-1]]) if len(back) else to_goal(self.problem, ahead)
+        through = _through(*self._table, *self._ends)
+        return through if self._ends[1] != NONE else to_goal(self.problem, through)
+
+
+@kernel
+def _through(vertices, parents, first, second):
+    """Path (m, dim) from the root of ``first`` to it, and from ``second`` back to its root."""
+    ahead, back = branch(vertices, parents, first), branch(vertices, parents, second)
+    return np.concatenate((ahead, back[::-1]))

@@ -2,6 +2,7 @@
 
 from concurrent.futures import ThreadPoolExecutor
 
+from hnr_planner.core.borrowed import borrowed
 from hnr_planner.core.checks import (
     check_choice,
     check_count,
@@ -13,6 +14,7 @@ from hnr_planner.core.errors import RequestError
 from hnr_planner.core.kernels import kernel
 from hnr_planner.core.sampling.walks import coordinate_hit_and_run_step, hit_and_run_step
 from hnr_planner.core.spaces.space import Space
+from hnr_planner.core.streams import stream
 import numpy as np
 from numpy.typing import ArrayLike
 
@@ -77,10 +79,10 @@ def sample(
         raise RequestError(f'start {start.tolist()} is {space.why_not_free(start)}')
 
     draws = np.empty((n_chains, n_draws, space.dim))
-    seeds = np.random.SeedSequence(check_seed(seed)).spawn(n_chains)
+    seed = check_seed(seed)
 
     def walk_chain(chain: int) -> None:
-        x, rng = space.to_kernel(start), np.random.default_rng(seeds[chain])
+        x, rng = space.to_kernel(start), stream(seed, chain)
         run_chain(space.data, step, x, rng, burn_in, thin, draws[chain])
 
     with ThreadPoolExecutor() as pool:
@@ -91,6 +93,7 @@ def sample(
 @kernel
 def run_chain(space, step, x, rng, burn_in, thin, draws):
     """Walk on from ``x`` (dim,), which is moved along, and fill ``draws`` (n_draws, dim)."""
+    space, x, rng = borrowed(space), borrowed(x), borrowed(rng)
     y = np.empty_like(x)
     for _ in range(burn_in):
         _take_step(space, step, x, rng, y)

@@ -1,7 +1,7 @@
 """
 Steps of random walks whose law in the long run is uniform on the space.
 
-A step is a small pure kernel: from the compiled space, a free point ``x`` and a generator it
+A step is a small pure kernel: from the compiled space, a free point ``x`` and a stream it
 writes the next point into ``y``. It returns how many draws it threw away because they rounded onto
 the boundary: points of the space stay points of the space.
 """
@@ -10,6 +10,7 @@ import math
 
 from hnr_planner.core.kernels import kernel
 from hnr_planner.core.spaces.primitives import contains, leave
+from hnr_planner.core.streams import normal, uniform
 import numpy as np
 
 #: After so many draws in a row on the boundary the chord holds no other number: the walk stays.
@@ -28,7 +29,7 @@ def hit_and_run_step(space, x, rng, y):
 def coordinate_hit_and_run_step(space, x, rng, y):
     """Take a step of Hit-and-Run along one of the axes, each as likely as the others."""
     u = np.zeros(len(x))
-    u[math.floor(rng.random() * len(x))] = 1.0
+    u[math.floor(uniform(rng) * len(x))] = 1.0
     return draw_on_chord(space, x, u, rng, y)
 
 
@@ -36,13 +37,13 @@ def coordinate_hit_and_run_step(space, x, rng, y):
 def draw_direction(rng, u):
     """Draw ``u`` uniformly from the unit sphere."""
     if len(u) == 2:
-        angle = 2.0 * math.pi * rng.random()
+        angle = 2.0 * math.pi * uniform(rng)
         u[0], u[1] = math.cos(angle), math.sin(angle)
         return
     squared = 0.0
     while squared == 0.0:
         for i in range(len(u)):
-            u[i] = rng.standard_normal()
+            u[i] = normal(rng)
             squared += u[i] * u[i]
     for i in range(len(u)):
         u[i] /= math.sqrt(squared)
@@ -60,7 +61,7 @@ def draw_on_chord(space, x, u, rng, y):
 def draw_between(space, x, u, lower, upper, rng, y):
     """Draw ``y = x + s u`` with ``s`` uniform in a part (lower, upper) of the chord; likewise."""
     for redraws in range(REDRAWS_MAX):
-        s = lower + (upper - lower) * rng.random()
+        s = lower + (upper - lower) * uniform(rng)
         for i in range(len(x)):
             y[i] = x[i] + s * u[i]
         if lower < s < upper and contains(space, y):

@@ -8,6 +8,7 @@ from typing import ClassVar
 
 from hnr_planner.core.checks import check_real, Floats
 from hnr_planner.core.errors import SpaceError
+from hnr_planner.core.kernels import kernel
 import numpy as np
 
 #: Coordinates must resolve this part of a cell, or free and blocked cannot be told apart.
@@ -76,29 +77,51 @@ class GridFrame:
         return unit * np.array([columns, rows], dtype=np.float64) + self.RIM
 
     @cached_property
-    def _corner(self) -> Floats:
-        return np.array(self.origin[:2])
+    def _turn(self) -> tuple[float, float]:
+        """Cosine and sine of the yaw, exact for none."""
+        return math.cos(self.origin[2]), math.sin(self.origin[2])
 
     def to_kernel(self, points: Floats) -> Floats:
         """Bring points (..., 2) [m] of the map frame into the kernel frame."""
-        return self.turn_to_kernel(points - self._corner) / self.resolution + self.RIM
+        x, y, _ = self.origin
+        cells = _to_cells(_in_rows(points), x, y, *self._turn, self.resolution, self.RIM)
+        return cells.reshape(points.shape)
 
     def from_kernel(self, cells: Floats) -> Floats:
         """Bring points (..., 2) of the kernel frame into the map frame [m]."""
-        return _turned((cells - self.RIM) * self.resolution, self.origin[2]) + self._corner
+        x, y, _ = self.origin
+        points = _from_cells(_in_rows(cells), x, y, *self._turn, self.resolution, self.RIM)
+        return points.reshape(cells.shape)
 
     def turn_to_kernel(self, directions: Floats) -> Floats:
         """Turn directions (..., 2) of the map frame into the grid's frame."""
-        return _turned(directions, -self.origin[2])
+        return _to_cells(_in_rows(directions), 0.0, 0.0, *self._turn, 1.0, 0).reshape(
+            directions.shape
+        )
 
 
-def _turned(points: Floats, angle: float) -> Floats:
-    """Turn points (..., 2) by ``angle`` [rad]; one point or many, the same to the last bit."""
-    if angle == 0.0:
-        return points
-    cos, sin = math.cos(angle), math.sin(angle)
-    turned = np.empty_like(points)
-    x, y = points[..., 0], points[..., 1]
-    turned[..., 0] = x * cos - y * sin
-    turned[..., 1] = x * sin + y * cos
-    return turned
+def _in_rows(points: Floats) -> Floats:
+    """Points (..., 2) as (k, 2), in the order of memory that the kernels are compiled for."""
+    return np.ascontiguousarray(points).reshape(-1, 2)
+
+
+@kernel
+def _to_cells(points, x, y, cos, sin, resolution, rim):
+    """Points (k, 2) in the frame at (x, y), turned back by its yaw, in cells beyond the rim."""
+    cells = np.empty_like(points)
+    for k in range(len(points)):
+        dx, dy = points[k, 0] - x, points[k, 1] - y
+        cells[k, 0] = (dx * cos + dy * sin) / resolution + rim
+        cells[k, 1] = (dy * cos - dx * sin) / resolution + rim
+    return cells
+
+
+@kernel
+def _from_cells(cells, x, y, cos, sin, resolution, rim):
+    """Undo ``_to_cells``: points (k, 2) of cells (k, 2)."""
+    points = np.empty_like(cells)
+    for k in range(len(cells)):
+        dx, dy = (cells[k, 0] - rim) * resolution, (cells[k, 1] - rim) * resolution
+        points[k, 0] = dx * cos - dy * sin + x
+        points[k, 1] = dx * sin + dy * cos + y
+    return points

@@ -20,8 +20,10 @@ from hnr_planner.core.spaces.primitives import Primitives, register
 import numpy as np
 from numpy.typing import NDArray
 
-#: Skipping costs more than it saves below this distance (measured on building maps).
-SKIP_FROM = 4
+#: Skipping costs more than it saves where fewer cells around are free (measured on building maps).
+LEAST_REACH = 2
+#: A skip ends this far inside the free cells, more than coordinates are rounded by [cells].
+SKIN = 1e-6
 
 
 class GridData(NamedTuple):
@@ -72,18 +74,29 @@ def _component(grid, x):
 
 @kernel
 def _leave(grid, x, u, t, enough):
+    """Traverse cell by cell, and skip from square to square where the walls are far."""
     free_distance = grid.free_distance
     x_at_t, y_at_t = x[0] + t * u[0], x[1] + t * u[1]
     if not _is_free(free_distance, x_at_t, y_at_t):
         return t
     column, column_step, beside_column = _first_cell(x_at_t, u[0])
     row, row_step, beside_row = _first_cell(y_at_t, u[1])
+    s_column = _crossing(x[0], u[0], column, column_step)
+    s_row = _crossing(x[1], u[1], row, row_step)
+    per_column, per_row = 1.0 / u[0], 1.0 / u[1]
     while True:
-        distance = int(free_distance[row, column])
-        if distance >= SKIP_FROM:
-            column, row = _skip(x, u, column, row, column_step, row_step, distance)
-        s_column = _crossing(x[0], u[0], column, column_step)
-        s_row = _crossing(x[1], u[1], row, row_step)
+        reach = int(free_distance[row, column]) - 1
+        if reach >= LEAST_REACH:
+            while reach >= LEAST_REACH:
+                s_column = _exit(x[0], per_column, column, column_step, reach)
+                s_row = _exit(x[1], per_row, row, row_step, reach)
+                s = min(s_column, s_row)
+                if s > enough:
+                    return max(s, t)
+                column, row = math.floor(x[0] + s * u[0]), math.floor(x[1] + s * u[1])
+                reach = int(free_distance[row, column]) - 1
+            column, s_column = _settled(x[0], u[0], column, column_step, s)
+            row, s_row = _settled(x[1], u[1], row, row_step, s)
         s = min(s_column, s_row)
         if s > enough:
             return max(s, t)
@@ -91,6 +104,10 @@ def _leave(grid, x, u, t, enough):
         next_row = row + row_step if s_row <= s_column else row
         if _blocked(free_distance, column, row, next_column, next_row, beside_column, beside_row):
             return max(s, t)
+        if next_column != column:
+            s_column = _crossing(x[0], u[0], next_column, column_step)
+        if next_row != row:
+            s_row = _crossing(x[1], u[1], next_row, row_step)
         column, row = next_column, next_row
 
 
@@ -126,30 +143,26 @@ def _blocked(free_distance, column, row, next_column, next_row, beside_column, b
 
 
 @kernel
-def _skip(x, u, column, row, column_step, row_step, distance):
-    """Last cell on the ray inside the free square of ``distance - 1`` cells around the cell."""
-    reach = distance - 1
-    last_column, last_row = column + reach * column_step, row + reach * row_step
-    s_column = _crossing(x[0], u[0], last_column, column_step)
-    s_row = _crossing(x[1], u[1], last_row, row_step)
-    if s_column <= s_row:
-        return last_column, _cell_before(x[1], u[1], row, last_row, row_step, s_column)
-    return _cell_before(x[0], u[0], column, last_column, column_step, s_row), last_row
+def _exit(x, per_u, cell, step, reach):
+    """Parameter just before the ray leaves the free cells up to ``reach`` away; inf for never."""
+    if step == 0:
+        return math.inf
+    side = cell + reach + 1 - SKIN if step > 0 else cell - reach + SKIN
+    return (side - x) * per_u
 
 
 @kernel
-def _cell_before(x, u, first, last, step, s):
-    """Cell that the ray is in just before ``s``, with the lines crossed that traversal counts."""
+def _settled(x, u, cell, step, s):
+    """Cell that traversal is in at ``s``, given one next to it at most, and where it leaves it."""
     if step == 0:
-        return first
-    at = x + s * u
-    cell = math.floor(at) if step > 0 else math.ceil(at) - 1
-    cell = min(max(cell, min(first, last)), max(first, last))
-    while cell != last and _crossing(x, u, cell, step) < s:
-        cell += step
-    while cell != first and _crossing(x, u, cell - step, step) >= s:
+        return cell, math.inf
+    while _crossing(x, u, cell - step, step) >= s:
         cell -= step
-    return cell
+    crossing = _crossing(x, u, cell, step)
+    while crossing < s:
+        cell += step
+        crossing = _crossing(x, u, cell, step)
+    return cell, crossing
 
 
 register(GridData, Primitives(contains=_contains, component=_component, leave=_leave))

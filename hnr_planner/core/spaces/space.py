@@ -109,9 +109,7 @@ class Space(ABC):
 
         """
         points = check_points('points', points, self.dim)
-        with np.errstate(invalid='ignore'):  # infinite points are nowhere, and so not free
-            inside = self.to_kernel(np.atleast_2d(points))
-        free = are_free(self.data, inside)
+        free = are_free(self.data, self.to_kernel(np.atleast_2d(points)))
         return bool(free[0]) if points.ndim == 1 else free
 
     def chord(self, point: ArrayLike, direction: ArrayLike) -> Chord:
@@ -148,3 +146,7 @@ class Space(ABC):
         points = self.to_kernel(check_points('path', path, self.dim))
         k = first_blocked_segment(self.data, points)
         return None if k < 0 else int(k)
+
+    def is_path_free(self, path: Floats) -> bool:
+        """Say whether every segment of a path (m, dim) of finite numbers is free."""
+        return bool(first_blocked_segment(self.data, self.to_kernel(path)) < 0)

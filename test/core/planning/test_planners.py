@@ -8,6 +8,7 @@ from test.laws import maps
 from hnr_planner.core import ALGORITHMS, GridSpace, plan, PlannerStatus, RRT
 from hnr_planner.core.planning.algorithms import make_planner
 from hnr_planner.core.planning.search import Problem
+from hnr_planner.core.streams import stream, uniform
 from hnr_planner.maps import spiral
 import numpy as np
 from numpy.typing import NDArray
@@ -35,7 +36,7 @@ def start_search(algorithm: str, blocked: NDArray[np.bool_], seed: int, goal_rad
         space.typical_clearance,
         space.scale,
     )
-    return make_planner(algorithm, {}).start(problem, np.random.default_rng(seed))
+    return make_planner(algorithm, {}).start(problem, stream(seed))
 
 
 # -- every planner -------------------------------------------------------------------------------
@@ -126,17 +127,17 @@ def test_the_paper_s_planners_stop_at_the_first_sample_in_the_ball(algorithm: st
 
 
 def test_hit_and_run_is_a_uniform_direction_and_a_uniform_point_of_its_chord():
-    """Walk the same chain by hand: same generator, chords from exact rational arithmetic."""
+    """Walk the same chain by hand: same stream, chords from exact rational arithmetic."""
     blocked = maps.TWO_ROOMS
     search = start_search('hit_and_run', blocked, seed=11, goal_radius=1e-12)
     search.advance(40)
-    rng = np.random.default_rng(11)
+    rng = stream(11)
     x = np.array([1.5, 1.5])
     for sample in search.samples[1:]:
-        angle = 2 * math.pi * rng.random()
+        angle = 2 * math.pi * uniform(rng)
         u = np.array([math.cos(angle), math.sin(angle)])
         lower, upper = map(float, chord_by_search(blocked, x - 1.0, u))
-        x = x + (lower + (upper - lower) * rng.random()) * u
+        x = x + (lower + (upper - lower) * uniform(rng)) * u
         np.testing.assert_allclose(sample, x, atol=1e-9)
         x = sample
     np.testing.assert_array_equal(search.parents, np.arange(-1, 40))
@@ -158,7 +159,7 @@ def grow_by_definition(blocked, rng, vertices, parents, margin: float) -> int:
     free = False
     while not free:
         rejected += 1
-        proposal = np.array([columns * rng.random(), rows * rng.random()])
+        proposal = np.array([columns * uniform(rng), rows * uniform(rng)])
         free = not blocked[int(proposal[1]), int(proposal[0])]
     parent = int(np.argmin([np.sum((proposal - v) ** 2) for v in vertices]))
     u = proposal - vertices[parent]
@@ -175,7 +176,7 @@ def test_rrt_extends_the_nearest_vertex_as_far_as_it_sees():
     blocked = maps.TWO_ROOMS
     search = start_search('rrt', blocked, seed=5, goal_radius=1e-12)
     search.advance(60)
-    rng = np.random.default_rng(5)
+    rng = stream(5)
     vertices, parents = [np.array([0.5, 0.5])], [-1]
     margin = 1e-9 * math.hypot(*blocked.shape)
     rejected = sum(grow_by_definition(blocked, rng, vertices, parents, margin) for _ in range(60))

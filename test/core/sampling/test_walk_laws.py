@@ -18,6 +18,7 @@ from test.sampling_gate import (
 
 from hnr_planner.core import GridSpace, sample
 from hnr_planner.core.sampling.walks import coordinate_hit_and_run_step, hit_and_run_step
+from hnr_planner.core.streams import stream
 import numba
 import numpy as np
 import pytest
@@ -69,7 +70,7 @@ def step_of(walk, region):
     def step(points, rng):
         at = space.to_kernel(points)
         moved = np.empty_like(at)
-        walk(space.data, at, rng, moved)
+        walk(space.data, at, stream(int(rng.integers(2**63))), moved)
         return space.from_kernel(moved)
 
     return step

@@ -1,0 +1,50 @@
+"""
+Arrays lent to a kernel: used without counting references.
+
+Compiled code counts the references to an array wherever it is handed on, sliced or taken out of a
+tuple, each time with an atomic instruction: for a ray through a grid that is more work than the
+ray. Whoever calls a kernel from Python holds its arguments until it returns, so the count does not
+matter there: a kernel that begins with ``space = borrowed(space)`` runs several times faster.
+
+What was borrowed must not be returned, and an array made in the kernel must not be borrowed: its
+owner would be gone.
+"""
+
+from typing import Any
+
+from numba.core import cgutils, types
+from numba.extending import intrinsic, overload
+
+
+def borrowed(value: Any) -> Any:
+    """Return an argument, arrays or tuples of them, without counting references from here on."""
+    return value
+
+
+@intrinsic
+def _without_owner(_typing_context: Any, kind: Any) -> Any:
+    """Return the same array or tuple, of the same type, but without owners to count for."""
+
+    def generate(context: Any, builder: Any, _signature: Any, arguments: Any) -> Any:
+        return _disowned(context, builder, kind, arguments[0])
+
+    return kind(kind), generate
+
+
+def _disowned(context: Any, builder: Any, kind: Any, value: Any) -> Any:
+    """Put no owner in the place of every owner in a value of compiled code."""
+    if isinstance(kind, types.Array):
+        array = context.make_array(kind)(context, builder, value)
+        array.meminfo = cgutils.get_null_value(array.meminfo.type)
+        return array._getvalue()
+    if isinstance(kind, types.BaseTuple):
+        members: Any = kind
+        for i, member in enumerate(members):
+            lent = _disowned(context, builder, member, builder.extract_value(value, i))
+            value = builder.insert_value(value, lent, i)
+    return value
+
+
+@overload(borrowed)
+def _compiled_borrowed(value):
+    return lambda value: _without_owner(value)  # type: ignore[call-arg]
