@@ -30,7 +30,7 @@ from numpy.typing import NDArray
 
 #: Uniform directions that a step chooses from, and the part of the longest ray that it leaves
 #: behind it at least: the best of 1 to 6 and of 0 to .9 on building maps and spirals.
-RAYS = 3
+RAYS = 4
 INNER = 0.7
 #: Vertices that the table has room for at first.
 FIRST_ROWS = 128

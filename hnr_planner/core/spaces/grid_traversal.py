@@ -74,29 +74,41 @@ def _component(grid, x):
 
 @kernel
 def _leave(grid, x, u, t, enough):
-    """Traverse cell by cell, and skip from square to square where the walls are far."""
-    free_distance = grid.free_distance
-    x_at_t, y_at_t = x[0] + t * u[0], x[1] + t * u[1]
+    return _traverse(grid.free_distance, x[0], x[1], u[0], u[1], t, enough)
+
+
+@kernel
+def _sees(grid, a, b):
+    dx, dy = b[0] - a[0], b[1] - a[1]
+    if dx == 0.0 and dy == 0.0:
+        return _is_free(grid.free_distance, a[0], a[1])
+    return _traverse(grid.free_distance, a[0], a[1], dx, dy, 0.0, 1.0) > 1.0
+
+
+@kernel
+def _traverse(free_distance, x, y, dx, dy, t, enough):
+    """Follow the ray cell by cell, and from free square to free square where walls are far."""
+    x_at_t, y_at_t = x + t * dx, y + t * dy
     if not _is_free(free_distance, x_at_t, y_at_t):
         return t
-    column, column_step, beside_column = _first_cell(x_at_t, u[0])
-    row, row_step, beside_row = _first_cell(y_at_t, u[1])
-    s_column = _crossing(x[0], u[0], column, column_step)
-    s_row = _crossing(x[1], u[1], row, row_step)
-    per_column, per_row = 1.0 / u[0], 1.0 / u[1]
+    column, column_step, beside_column = _first_cell(x_at_t, dx)
+    row, row_step, beside_row = _first_cell(y_at_t, dy)
+    s_column = _crossing(x, dx, column, column_step)
+    s_row = _crossing(y, dy, row, row_step)
+    per_column, per_row = 1.0 / dx, 1.0 / dy
     while True:
         reach = int(free_distance[row, column]) - 1
         if reach >= LEAST_REACH:
             while reach >= LEAST_REACH:
-                s_column = _exit(x[0], per_column, column, column_step, reach)
-                s_row = _exit(x[1], per_row, row, row_step, reach)
+                s_column = _exit(x, per_column, column, column_step, reach)
+                s_row = _exit(y, per_row, row, row_step, reach)
                 s = min(s_column, s_row)
                 if s > enough:
                     return max(s, t)
-                column, row = math.floor(x[0] + s * u[0]), math.floor(x[1] + s * u[1])
+                column, row = math.floor(x + s * dx), math.floor(y + s * dy)
                 reach = int(free_distance[row, column]) - 1
-            column, s_column = _settled(x[0], u[0], column, column_step, s)
-            row, s_row = _settled(x[1], u[1], row, row_step, s)
+            column, s_column = _settled(x, dx, column, column_step, s)
+            row, s_row = _settled(y, dy, row, row_step, s)
         s = min(s_column, s_row)
         if s > enough:
             return max(s, t)
@@ -105,9 +117,9 @@ def _leave(grid, x, u, t, enough):
         if _blocked(free_distance, column, row, next_column, next_row, beside_column, beside_row):
             return max(s, t)
         if next_column != column:
-            s_column = _crossing(x[0], u[0], next_column, column_step)
+            s_column = _crossing(x, dx, next_column, column_step)
         if next_row != row:
-            s_row = _crossing(x[1], u[1], next_row, row_step)
+            s_row = _crossing(y, dy, next_row, row_step)
         column, row = next_column, next_row
 
 
@@ -165,4 +177,4 @@ def _settled(x, u, cell, step, s):
     return cell, crossing
 
 
-register(GridData, Primitives(contains=_contains, component=_component, leave=_leave))
+register(GridData, Primitives(_contains, _component, _leave, _sees))

@@ -12,6 +12,8 @@ A compiled space is a NamedTuple of arrays. For its type three kernels are regis
     The first parameter ``s >= t`` at which the line ``x + s u`` leaves the space; ``t`` itself
     where the line is out already. Once the line is known to stay inside until ``enough`` the
     search may stop there: any value above ``enough`` is an answer.
+``sees(space, a, b) -> bool``
+    Whether the closed segment from ``a`` to ``b`` is free: the chord goes beyond ``b``.
 
 Compiled code calls them by these names for any space: numba picks the kernel by the type of the
 NamedTuple. Interpreted code reaches the same kernels interpreted, so that both can be compared.
@@ -32,6 +34,7 @@ class Primitives(NamedTuple):
     contains: Dispatcher
     component: Dispatcher
     leave: Dispatcher
+    sees: Dispatcher
 
 
 _PRIMITIVES: dict[type, Primitives] = {}
@@ -57,6 +60,11 @@ def leave(space: Any, x: Any, u: Any, t: float, enough: float) -> float:
     return interpreted(_PRIMITIVES[type(space)].leave)(space, x, u, t, enough)
 
 
+def sees(space: Any, a: Any, b: Any) -> bool:
+    """Say whether the closed segment from ``a`` to ``b`` is free."""
+    return interpreted(_PRIMITIVES[type(space)].sees)(space, a, b)
+
+
 @overload(contains)
 def _compiled_contains(space, x):
     compiled = _PRIMITIVES[space.instance_class].contains
@@ -73,6 +81,12 @@ def _compiled_component(space, x):
 def _compiled_leave(space, x, u, t, enough):
     compiled = _PRIMITIVES[space.instance_class].leave
     return lambda space, x, u, t, enough: compiled(space, x, u, t, enough)
+
+
+@overload(sees)
+def _compiled_sees(space, a, b):
+    compiled = _PRIMITIVES[space.instance_class].sees
+    return lambda space, a, b: compiled(space, a, b)
 
 
 @kernel
@@ -112,13 +126,9 @@ def chord(space, x, u):
 
 
 @kernel
-def sees(space, a, b):
-    """Say whether the closed segment from ``a`` to ``b`` is free: the chord goes beyond ``b``."""
-    u = b - a
-    for component in u:
-        if component != 0.0:
-            return leave(space, a, u, 0.0, 1.0) > 1.0
-    return contains(space, a)
+def sees_from(space, a, b):
+    """Say whether the closed segment from ``a`` to ``b`` is free: ``sees`` for Python."""
+    return sees(space, a, b)
 
 
 @kernel
