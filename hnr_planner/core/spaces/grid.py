@@ -11,7 +11,7 @@ from hnr_planner.core.spaces.clearance import path_clearance, point_clearance
 from hnr_planner.core.spaces.grid_cells import Bools, read_blocked, read_occupancy
 from hnr_planner.core.spaces.grid_fields import components, free_distance, inflate
 from hnr_planner.core.spaces.grid_frame import GridFrame
-from hnr_planner.core.spaces.grid_parts import nearest_in_part
+from hnr_planner.core.spaces.grid_parts import island_points, nearest_in_part
 from hnr_planner.core.spaces.grid_traversal import GridData
 from hnr_planner.core.spaces.primitives import part_of
 from hnr_planner.core.spaces.space import Space
@@ -260,6 +260,11 @@ class GridSpace(Space):
             return None
         nearest, offset = nearest_in_part(self.data.labels, part, target, self.margin)
         return self.frame.from_kernel(nearest) if offset <= radius / self.scale else None
+
+    @cached_property
+    def island_points(self) -> Floats:
+        """A point (k, 2) in each blocked part with free cells all around it, kernel frame."""
+        return island_points(self.data.free_distance == 0)
 
     def _part(self, point: Floats) -> int:
         """Part of free space that holds a point (2,) [m]: 0 where it is not free."""

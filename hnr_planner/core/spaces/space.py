@@ -70,6 +70,11 @@ class Space(ABC):
         """Distance from a free point to the boundary, roughly and on average, kernel frame."""
 
     @property
+    def island_points(self) -> Floats | None:
+        """A point (k, dim) in each obstacle that a path can go round; None where unknown."""
+        return None
+
+    @property
     @abstractmethod
     def bounds(self) -> tuple[Floats, Floats]:
         """Lower and upper corner (dim,) of a box around the free points, caller's frame."""
