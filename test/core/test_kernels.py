@@ -12,6 +12,7 @@ from hnr_planner.core.kernels import interpreted
 from hnr_planner.core.planning import hit_and_run_connect as connect
 from hnr_planner.core.planning import nearest, rrt, shortcuts
 from hnr_planner.core.planning.hit_and_run import _walk
+from hnr_planner.core.planning.homology import islands_at, NO_ISLANDS
 from hnr_planner.core.planning.search import Problem
 from hnr_planner.core.sampling.sample import run_chain
 from hnr_planner.core.spaces.primitives import chord
@@ -165,9 +166,11 @@ def test_hit_and_run_connect():
     assert_same(*outcomes)
 
 
-def test_simplify():
+@pytest.mark.filterwarnings('ignore:overflow')  # signatures are sums modulo 2^64
+@pytest.mark.parametrize('islands', [NO_ISLANDS, islands_at(GRID.island_points)])
+def test_simplify(islands):
     chain = np.tile(PROBLEM.start, (60, 1))
     _walk(PROBLEM._replace(goal_radius=1e-9), stream(1), chain, 1, 60)
     kept = np.zeros(60, dtype=np.int64)
-    assert_same(*both(shortcuts.skip, GRID.data, chain, kept, 1, True, 100))
-    assert_same(*both(shortcuts.tighten, GRID.data, chain, 1e-8, stream(5), 1000))
+    assert_same(*both(shortcuts.skip, GRID.data, islands, chain, kept, 1, True, 100))
+    assert_same(*both(shortcuts.tighten, GRID.data, islands, chain, 1e-8, stream(5), 1000))

@@ -12,6 +12,11 @@ import time
 from typing import Any, NamedTuple
 
 from hnr_planner.core.checks import check_count, check_number, Floats
+from hnr_planner.core.planning.alternatives import (
+    check_alternatives,
+    compile_alternatives,
+    with_alternatives,
+)
 from hnr_planner.core.planning.lengths import path_length
 from hnr_planner.core.planning.limits import Event, Limits
 from hnr_planner.core.planning.request import check_request, Request, without_search
@@ -40,6 +45,7 @@ def plan(
     simplify: bool = True,
     optimize_for: float = 0.0,
     optimize_iterations: int = 0,
+    alternatives: int = 1,
     cancel: Event | None = None,
     **settings: Any,
 ) -> PlanResult:
@@ -72,6 +78,10 @@ def plan(
     optimize_iterations : int
         How many more searches to run for a shorter path; together with ``optimize_for`` whichever
         ends first.
+    alternatives : int
+        How many paths to look for, none of which can be deformed into another past an obstacle:
+        ``PlanResult.paths``, the shortest first. There may be fewer. All have the same ends, also
+        in a goal region.
     cancel : threading.Event, optional
         Ends the call once it is set.
     **settings
@@ -92,16 +102,28 @@ def plan(
     seconds = check_number('time_limit', time_limit, 0.0)
     improve_seconds = check_number('optimize_for', optimize_for, 0.0)
     improve_searches = check_count('optimize_iterations', optimize_iterations, 0)
+    n_paths = check_alternatives(space, alternatives, request.simplify)
     transitions = (
         math.inf if max_iterations is None else check_count('max_iterations', max_iterations, 1)
     )
-    _compile(request)
+    _compile(request, n_paths)
 
     began = time.perf_counter()
+    limits = Limits(began + seconds, transitions, cancel)
     known = without_search(request)
     if known is not None:
-        return _answer_without_search(request, *known, began)
-    limits = Limits(began + seconds, transitions, cancel)
+        answer = _answer_without_search(request, *known, began)
+    else:
+        answer = _answer_by_search(request, limits, improve_seconds, improve_searches, began)
+    if n_paths > 1 and answer.status is PlannerStatus.SOLVED:
+        answer = with_alternatives(request, answer, n_paths, limits, began)
+    return answer
+
+
+def _answer_by_search(
+    request: Request, limits: Limits, improve_seconds: float, improve_searches: int, began: float
+) -> PlanResult:
+    """Search, and search again for a shorter path where that is asked for."""
     best = _attempt(request, 0, limits, began)
     first, iterations = best.first, best.search.iterations
     if first is not None and (improve_seconds or improve_searches):
@@ -109,7 +131,7 @@ def plan(
         improving = replace(limits, deadline=min(limits.deadline, until))
         best, iterations = _improve(request, best, improve_searches or math.inf, improving, began)
         limits.cut = limits.cut or improving.cut
-    samples = space.from_kernel(best.search.samples)
+    samples = request.space.from_kernel(best.search.samples)
     samples[0] = request.start
     return PlanResult(
         status=best.status,
@@ -157,6 +179,8 @@ def _answer_without_search(
 
 #: What random streams are for.
 SEARCH, SHORTEN = 0, 1
+#: Purpose of the stream that shortens the rough path that a space knows.
+GUIDE = 3
 
 
 class _Attempt(NamedTuple):
@@ -214,7 +238,12 @@ def _path_found(request: Request, search: Search) -> Floats:
 def _improve(
     request: Request, best: _Attempt, searches: float, limits: Limits, began: float
 ) -> tuple[_Attempt, int]:
-    """Search again from fresh seeds: the attempt with the shortest path, and all transitions."""
+    """
+    Look for shorter paths: the attempt with the shortest, and all transitions.
+
+    First what the space itself knows of a short way, then searches from fresh seeds.
+    """
+    best = _guided(request, best, limits)
     iterations, number = best.search.iterations, 1
     while number <= searches and len(best.path) > 2 and limits.stop() is None:
         again = _attempt(request, number, limits, began)
@@ -223,6 +252,21 @@ def _improve(
         if again.length < best.length:
             best = again
     return best, iterations
+
+
+def _guided(request: Request, best: _Attempt, limits: Limits) -> _Attempt:
+    """Return the attempt with the path over the space's own rough one, where that is shorter."""
+    rough = request.space.rough_path(request.problem.start, request.problem.goal)
+    if rough is None:
+        return best
+    path = request.space.from_kernel(rough)
+    path[0], path[-1] = request.start, request.goal
+    if not request.space.is_path_free(path):
+        return best
+    if request.simplify:
+        path = shorten(request.space, path, request.stream(GUIDE), limits)
+    length = path_length(path)
+    return best._replace(path=path, length=length) if length < best.length else best
 
 
 def _message(attempt: _Attempt, iterations: int, began: float) -> str:
@@ -234,12 +278,13 @@ def _message(attempt: _Attempt, iterations: int, began: float) -> str:
     return f'{attempt.status.value} ({iterations} transitions, {seconds:.3g} s)'
 
 
-_compiled: set[tuple[type, type[Planner]]] = set()
+_compiled: set[tuple[type, type[Planner], bool]] = set()
 
 
-def _compile(request: Request) -> None:
+def _compile(request: Request, n_paths: int) -> None:
     """Compile, once for each kind of space and planner, before any clock runs."""
-    space, kinds = request.space, (type(request.space.data), type(request.planner))
+    space = request.space
+    kinds = type(space.data), type(request.planner), n_paths > 1
     if kinds in _compiled:
         return
     search = request.planner.start(request.problem, request.stream())
@@ -248,4 +293,6 @@ def _compile(request: Request) -> None:
     ends = np.stack([request.start, request.goal])
     compile_shorten(space, ends)
     space.first_blocked_segment(ends)
+    if n_paths > 1:
+        compile_alternatives(request)
     _compiled.add(kinds)

@@ -61,6 +61,8 @@ class PlanResult:
         Whether a clock or a cancellation ended something: only then may the same seed give
         another result.
     first_solution : FirstSolution or None
+    others : tuple of (k, dim)
+        Further paths, when alternatives were asked for.
 
     """
 
@@ -77,8 +79,9 @@ class PlanResult:
     seed: int
     cut_by_time: bool
     first_solution: FirstSolution | None
+    others: tuple[Floats, ...] = ()
 
     @property
     def paths(self) -> tuple[Floats, ...]:
-        """All paths found, the shortest first."""
-        return (self.path,) if len(self.path) else ()
+        """All paths, the shortest first: ``path`` and the others."""
+        return (self.path, *self.others) if len(self.path) else ()

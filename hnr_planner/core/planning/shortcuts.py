@@ -4,10 +4,14 @@ Ways to shorten a path by visibility, as kernels: each only ever shortens, and c
 ``skip``: a vertex is followed by the last one that it sees. ``tighten``: random points of the path
 are joined; each vertex slides along its two segments until an obstacle is in the way, and what
 corner is left there is cut off, so that the path comes to lie taut around obstacles.
+
+With ``islands`` the path stays in its homology class: nothing is replaced by what passes one of
+them on the other side.
 """
 
 from hnr_planner.core.borrowed import borrowed
 from hnr_planner.core.kernels import kernel
+from hnr_planner.core.planning.homology import crossings, loop_signature, signature
 from hnr_planner.core.planning.lengths import norm
 from hnr_planner.core.spaces.primitives import sees
 from hnr_planner.core.streams import uniform
@@ -24,7 +28,7 @@ LEAST_CUT = 1e-3
 
 
 @kernel
-def skip(space, points, kept, n_kept, every, tests_max):
+def skip(space, islands, points, kept, n_kept, every, tests_max):
     """
     Go on from the last vertex kept to the last one that it sees, and so on.
 
@@ -41,7 +45,7 @@ def skip(space, points, kept, n_kept, every, tests_max):
             break
         while ahead > 1:
             tests += 1
-            if sees(space, points[at], points[at + ahead]):
+            if _may_join(space, islands, points, at, at + ahead):
                 break
             ahead = ahead - 1 if every else ahead // 2
         kept[n_kept] = at + ahead
@@ -50,24 +54,33 @@ def skip(space, points, kept, n_kept, every, tests_max):
 
 
 @kernel
-def tighten(space, points, margin, rng, tests_max):
+def _may_join(space, islands, points, i, j):
+    """Say whether vertices ``i`` and ``j`` of a path see each other, on its side of islands."""
+    if not sees(space, points[i], points[j]):
+        return False
+    after = j + 1
+    return signature(islands, points[i:after]) == crossings(islands, points[i], points[j])
+
+
+@kernel
+def tighten(space, islands, points, margin, rng, tests_max):
     """Join random points of the path, then slide and cut each vertex: (path, tests)."""
-    space, rng = borrowed(space), borrowed(rng)
+    space, islands, rng = borrowed(space), borrowed(islands), borrowed(rng)
     tests = 0
     for _ in range(TRIES * (len(points) - 1)):
         if tests + 3 > tests_max:
             break
-        points = _join_two(space, points, rng)
+        points = _join_two(space, islands, points, rng)
         tests += 3
     k = 1
     while k < len(points) - 1 and tests + 1 + 3 * HALVINGS <= tests_max:
-        if sees(space, points[k - 1], points[k + 1]):
+        if _may_join(space, islands, points, k - 1, k + 1):
             points = _replaced(points, k, points[:0])
             tests += 1
             continue
-        _slide(space, points[k - 1], points[k], points[k + 1], margin)
-        _slide(space, points[k + 1], points[k], points[k - 1], margin)
-        corner = _cut(space, points[k - 1], points[k], points[k + 1], margin)
+        _slide(space, islands, points[k - 1], points[k], points[k + 1], margin)
+        _slide(space, islands, points[k + 1], points[k], points[k - 1], margin)
+        corner = _cut(space, islands, points[k - 1], points[k], points[k + 1], margin)
         tests += 1 + 3 * HALVINGS
         points = _replaced(points, k, corner)
         k += len(corner)
@@ -75,12 +88,13 @@ def tighten(space, points, margin, rng, tests_max):
 
 
 @kernel
-def _slide(space, a, x, b, margin):
+def _slide(space, islands, a, x, b, margin):
     """Slide ``x`` towards ``a`` to ``margin`` before it would lose sight of ``b``."""
     free, blocked = 0.0, 1.0
     for _ in range(HALVINGS):
         middle = (free + blocked) / 2.0
-        if sees(space, x + middle * (a - x), b):
+        y = x + middle * (a - x)
+        if sees(space, y, b) and loop_signature(islands, y, x, b) == 0:
             free = middle
         else:
             blocked = middle
@@ -90,12 +104,13 @@ def _slide(space, a, x, b, margin):
 
 
 @kernel
-def _cut(space, a, x, b, margin):
+def _cut(space, islands, a, x, b, margin):
     """Cut off the corner a-x-b as far as the cut is free: its two ends, ``x`` for little gain."""
     free, blocked = 0.0, 1.0
     for _ in range(HALVINGS):
         middle = (free + blocked) / 2.0
-        if sees(space, x + middle * (a - x), x + middle * (b - x)):
+        first, second = x + middle * (a - x), x + middle * (b - x)
+        if sees(space, first, second) and loop_signature(islands, first, x, second) == 0:
             free = middle
         else:
             blocked = middle
@@ -118,7 +133,7 @@ def _replaced(points, k, others):
 
 
 @kernel
-def _join_two(space, points, rng):
+def _join_two(space, islands, points, rng):
     """Try to join two random points of the path, uniform along its length, directly."""
     along = _lengths_along(points)
     s, t = along[-1] * uniform(rng), along[-1] * uniform(rng)
@@ -127,7 +142,9 @@ def _join_two(space, points, rng):
         return points
     a, b = _point_on(points, along, i, min(s, t)), _point_on(points, along, j, max(s, t))
     if sees(space, points[i], a) and sees(space, a, b) and sees(space, b, points[j + 1]):
-        return _joined(points, i, a, b, j + 1)
+        joined = _joined(points, i, a, b, j + 1)
+        if signature(islands, joined) == signature(islands, points):
+            return joined
     return points
 
 

@@ -10,6 +10,7 @@ import time
 
 from hnr_planner.core.checks import check_count, check_number, check_points, check_seed, Floats
 from hnr_planner.core.errors import RequestError
+from hnr_planner.core.planning.homology import Islands, NO_ISLANDS
 from hnr_planner.core.planning.lengths import path_length
 from hnr_planner.core.planning.limits import Limits
 from hnr_planner.core.planning.shortcuts import skip, tighten
@@ -96,14 +97,19 @@ def shorten(
     rng: Stream,
     limits: Limits,
     tests_max: int = TESTS_MAX,
+    islands: Islands = NO_ISLANDS,
 ) -> Floats:
-    """Shorten a free path (m, dim) of the caller's frame within limits; the same ends."""
+    """
+    Shorten a free path (m, dim) of the caller's frame within limits; the same ends.
+
+    It passes each of the ``islands`` on the side where it did before.
+    """
     points = space.to_kernel(path)
-    points, tests = _skip_vertices(space, points, limits, tests_max)
+    points, tests = skip_vertices(space, points, limits, tests_max, islands)
     length, gain = path_length(points), math.inf
     while len(points) > 2 and gain > LEAST_GAIN * length and limits.stop() is None:
         batch = min(max(TESTS_IN_A_BATCH, TESTS_FOR_A_VERTEX * len(points)), tests_max - tests)
-        points, used = tighten(space.data, points, space.margin, rng, batch)
+        points, used = tighten(space.data, islands, points, space.margin, rng, batch)
         tests += used
         gain, length = length - path_length(points), path_length(points)
     shorter = space.from_kernel(points)
@@ -113,21 +119,25 @@ def shorten(
     return path
 
 
-def _skip_vertices(
-    space: Space, points: Floats, limits: Limits, tests_max: int
+def skip_vertices(
+    space: Space,
+    points: Floats,
+    limits: Limits,
+    tests_max: int = TESTS_MAX,
+    islands: Islands = NO_ISLANDS,
 ) -> tuple[Floats, int]:
     """Keep only vertices that follow each other as the last one seen: (path, tests)."""
     tests, before = 0, math.inf
     while MANY < len(points) < WORTHWHILE * before:
         before = len(points)
-        points, used = _pass_over(space, points, False, limits, tests_max - tests)
+        points, used = _pass_over(space, points, False, islands, limits, tests_max - tests)
         tests += used
-    points, used = _pass_over(space, points, True, limits, tests_max - tests)
+    points, used = _pass_over(space, points, True, islands, limits, tests_max - tests)
     return points, tests + used
 
 
 def _pass_over(
-    space: Space, points: Floats, every: bool, limits: Limits, tests_max: int
+    space: Space, points: Floats, every: bool, islands: Islands, limits: Limits, tests_max: int
 ) -> tuple[Floats, int]:
     """Skip along all of a path, within limits: (path, tests)."""
     kept, n_kept, last = np.zeros(len(points), dtype=np.int64), 1, len(points) - 1
@@ -135,7 +145,7 @@ def _pass_over(
     while began < n_kept and kept[n_kept - 1] < last and limits.stop() is None:
         began = n_kept
         batch = min(max(TESTS_IN_A_BATCH, len(points)), tests_max - tests)
-        n_kept, used = skip(space.data, points, kept, n_kept, every, batch)
+        n_kept, used = skip(space.data, islands, points, kept, n_kept, every, batch)
         tests += used
     rest = np.arange(kept[n_kept - 1] + 1, len(points))
     return points[np.concatenate([kept[:n_kept], rest])], tests
@@ -143,6 +153,6 @@ def _pass_over(
 
 def compile_shorten(space: Space, points: Floats) -> None:
     """Compile what ``shorten`` runs on this kind of space, without doing anything."""
-    skip(space.data, points, np.zeros(1, dtype=np.int64), 1, True, 0)
-    tighten(space.data, points[:1], space.margin, stream(0), 0)
+    skip(space.data, NO_ISLANDS, points, np.zeros(1, dtype=np.int64), 1, True, 0)
+    tighten(space.data, NO_ISLANDS, points[:1], space.margin, stream(0), 0)
     path_length(points)

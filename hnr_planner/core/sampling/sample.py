@@ -36,8 +36,8 @@ def sample(
     """
     Draw points that are uniform on the start's connected part of a space, in the long run.
 
-    Every chain walks from ``start`` in a thread of its own, with a generator spawned from the
-    seed: the draws are the same whatever the number of processors.
+    Every chain walks from ``start`` in a thread and with a random stream of its own: the draws are
+    the same whatever the number of processors.
 
     Parameters
     ----------

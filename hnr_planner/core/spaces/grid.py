@@ -11,7 +11,8 @@ from hnr_planner.core.spaces.clearance import path_clearance, point_clearance
 from hnr_planner.core.spaces.grid_cells import Bools, read_blocked, read_occupancy
 from hnr_planner.core.spaces.grid_fields import components, free_distance, inflate
 from hnr_planner.core.spaces.grid_frame import GridFrame
-from hnr_planner.core.spaces.grid_parts import nearest_in_part
+from hnr_planner.core.spaces.grid_lattice import build_lattice, Lattice, rough_path
+from hnr_planner.core.spaces.grid_parts import island_points, nearest_in_part
 from hnr_planner.core.spaces.grid_traversal import GridData
 from hnr_planner.core.spaces.primitives import part_of
 from hnr_planner.core.spaces.space import Space
@@ -46,6 +47,7 @@ class GridSpace(Space):
     robot_radius: float
     data: GridData
     _wall_distance: NDArray[np.uint8]
+    _lattice: Lattice
 
     dim = 2
 
@@ -115,11 +117,13 @@ class GridSpace(Space):
         if not 0.0 <= radius < np.inf:
             raise SpaceError(f'robot_radius must be at least 0 and finite, got {radius!r}')
         distance = free_distance(inflate(occupied, radius / frame.resolution) | closed)
+        data = GridData(distance, components(distance > 0))
         return cls(
             frame=frame,
             robot_radius=radius,
-            data=GridData(distance, components(distance > 0)),
+            data=data,
             _wall_distance=free_distance(occupied, closed_rim=False),
+            _lattice=build_lattice(data),
         )
 
     # -- where it lies ---------------------------------------------------------------------------
@@ -260,6 +264,16 @@ class GridSpace(Space):
             return None
         nearest, offset = nearest_in_part(self.data.labels, part, target, self.margin)
         return self.frame.from_kernel(nearest) if offset <= radius / self.scale else None
+
+    def rough_path(self, start: Floats, goal: Floats) -> Floats | None:
+        """Return the shortest path (m, 2) over a coarse lattice of the grid, kernel frame."""
+        path = rough_path(self.data, self._lattice, start, goal)
+        return path if len(path) else None
+
+    @cached_property
+    def island_points(self) -> Floats:
+        """A point (k, 2) in each blocked part with free cells all around it, kernel frame."""
+        return island_points(self.data.free_distance == 0)
 
     def _part(self, point: Floats) -> int:
         """Part of free space that holds a point (2,) [m]: 0 where it is not free."""

@@ -1,9 +1,29 @@
-"""Connected parts of a grid's free space: the point of a part that is nearest to another point."""
+"""Connected parts of a grid: the nearest point of a free one, and a point in each blocked one."""
 
 import math
 
+import cv2
 from hnr_planner.core.kernels import kernel
+from hnr_planner.core.spaces.grid_cells import Bools
 import numpy as np
+from numpy.typing import NDArray
+
+
+def island_points(blocked_with_rim: Bools) -> NDArray[np.float64]:
+    """
+    Return the centre (k, 2) of a cell of each island, kernel frame.
+
+    An island is a group of blocked cells connected over edges or corners, between which nothing
+    gets through, that is not connected with the rim.
+    """
+    _, labels = cv2.connectedComponents(
+        blocked_with_rim.view(np.uint8), connectivity=8, ltype=cv2.CV_32S
+    )
+    cells = np.flatnonzero(labels)
+    _, first = np.unique(labels.flat[cells], return_index=True)
+    rows, columns = np.unravel_index(cells[first], labels.shape)
+    inside = labels[rows, columns] != labels[0, 0]
+    return np.stack([columns, rows], axis=1)[inside] + 0.5
 
 
 @kernel

@@ -70,6 +70,11 @@ class Space(ABC):
         """Distance from a free point to the boundary, roughly and on average, kernel frame."""
 
     @property
+    def island_points(self) -> Floats | None:
+        """A point (k, dim) in each obstacle that a path can go round; None where unknown."""
+        return None
+
+    @property
     @abstractmethod
     def bounds(self) -> tuple[Floats, Floats]:
         """Lower and upper corner (dim,) of a box around the free points, caller's frame."""
@@ -93,6 +98,14 @@ class Space(ABC):
     def region_reachable(self, start: ArrayLike, goal: ArrayLike, radius: float) -> bool:
         """Say whether a path leads into the ball around ``goal``; True where that is not known."""
         return True
+
+    def rough_path(self, start: Floats, goal: Floats) -> Floats | None:
+        """
+        Return a free path (m, dim) that takes a short way round obstacles, kernel frame.
+
+        It may wander on the way. None where the space knows none.
+        """
+        return None
 
     def contains(self, points: ArrayLike) -> Any:
         """
