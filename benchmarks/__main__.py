@@ -54,7 +54,8 @@ def main() -> None:
     results, picture = _places(quick)
     draw(standings, picture)
     seconds = time.perf_counter() - began
-    results.write_text(report(bench, sections, seconds))
+    beside = os.path.relpath(picture, results.parent)
+    results.write_text(report(bench, sections, seconds, beside))
     say(f'\n{verdict_table([v for section in sections for v in section.verdicts])}')
     say(f'\n{seconds:.0f} s. All of it: {results} and {picture}')
 

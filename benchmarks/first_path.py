@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from benchmarks.competitors.ompl_planners import NATIVE, WHEEL
 from benchmarks.race import Standing
-from benchmarks.sections import Bench, milliseconds, on_all, ratio, Section, table
+from benchmarks.sections import Bench, milliseconds, on_all, ratio, Section, table, Verdict
 from benchmarks.standings import Summary, summary
 
 #: What a call from Python may cost above the best of the others [s].
@@ -14,6 +14,15 @@ CALL = 30e-6
 #: Below this time of RRTConnect [s] it is no match on speed.
 NO_MATCH = 0.1e-3
 HALF = 0.5
+#: What is asked, and the bounds, in words.
+ASKED = (
+    (
+        'first path, `auto`, median against RRTConnect',
+        'half of it + 30 us, where it takes over .1 ms',
+    ),
+    ("first path, `auto`, median against the fastest of OMPL's planners there", '1 x + 30 us'),
+    ("first path, `auto`, p95 against RRTConnect's", '1 x, where that is over .1 ms'),
+)
 
 
 class Duel(NamedTuple):
@@ -48,34 +57,20 @@ def first_path(bench: Bench) -> Section:
     title = 'Time to the first path'
     duels = [_duel(standing) for standing in bench.standings if _has_ompl(standing)]
     if not duels:
-        return Section(title, 'OMPL in C++ is missing: nothing to compare with.')
+        words = 'not measured: OMPL in C++ is missing'
+        asked = [Verdict(what, to_reach, words, False) for what, to_reach in ASKED]
+        return Section(title, 'OMPL in C++ is missing: nothing to compare with.', asked)
+    falls_short = (
+        {d.problem: f'{d.auto.seconds / d.rival.seconds:.2f} x' for d in duels if d.above_half},
+        {d.problem: f'{d.auto.seconds / d.fastest_seconds:.2f} x' for d in duels if d.slower},
+        {
+            d.problem: f'{d.auto.seconds_p95 / d.rival.seconds_p95:.2f} x'
+            for d in duels
+            if d.p95_above
+        },
+    )
     verdicts = [
-        on_all(
-            'first path, `auto`, median against RRTConnect',
-            'half of it + 30 us, where it takes over .1 ms',
-            {
-                d.problem: f'{d.auto.seconds / d.rival.seconds:.2f} x'
-                for d in duels
-                if d.above_half
-            },
-            len(duels),
-        ),
-        on_all(
-            "first path, `auto`, median against the fastest of OMPL's planners there",
-            '1 x + 30 us',
-            {d.problem: f'{d.auto.seconds / d.fastest_seconds:.2f} x' for d in duels if d.slower},
-            len(duels),
-        ),
-        on_all(
-            "first path, `auto`, p95 against RRTConnect's",
-            '1 x, where that is over .1 ms',
-            {
-                d.problem: f'{d.auto.seconds_p95 / d.rival.seconds_p95:.2f} x'
-                for d in duels
-                if d.p95_above
-            },
-            len(duels),
-        ),
+        on_all(*asked, short, len(duels)) for asked, short in zip(ASKED, falls_short, strict=True)
     ]
     head = (
         'problem | auto | p95 | RRTConnect | p95 | auto / it | fastest of OMPL | its time | '

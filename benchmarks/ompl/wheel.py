@@ -27,7 +27,7 @@ PLANNERS = {
 SIMPLIFY = '+simplify'
 
 
-class GridTraversal(base.MotionValidator):  # type: ignore[misc, name-defined]
+class GridTraversal(base.MotionValidator):
     """The exact check of motions."""
 
     def __init__(self, si: base.SpaceInformation, grid: GridData) -> None:
