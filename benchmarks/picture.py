@@ -71,7 +71,9 @@ def draw(standings: list[Standing], file: Path) -> None:
         marks.append(_plot(axes, _on_maps(maps, groups)))
         axes.set(xscale='log', yscale='log', xlim=(10e-3, 1e3))
         axes.set(xlabel='time [ms]', ylabel='longer than the best known [%]')
-        axes.set_title(f'ours and {name}, {len(maps)} maps: one run and more', fontsize=10)
+        axes.set_title(
+            f'ours and {name}, {len(maps)} maps: medians, one run and more', fontsize=10
+        )
     marks.append(_plot(panels[2], _over_spirals(spirals), marker='o'))
     panels[2].invert_xaxis()
     panels[2].set(yscale='log', xlabel='width of the corridor [m]', ylabel='time to a path [ms]')
@@ -86,21 +88,29 @@ def draw(standings: list[Standing], file: Path) -> None:
 
 
 def _on_maps(standings: list[Standing], groups: tuple[str, ...]) -> list[Line]:
-    """Time and length after one run or step and after more, geometric means over the maps."""
+    """Time and length after one run or step and after more, medians over the maps."""
     lines: list[Line] = []
     for k, label, group in _competitors(standings):
         if group not in groups and label not in SHOWN:
             continue
-        courses = [course(standing.entries[k], standing) for standing in standings]
-        steps = min(len(times) for times, _ in courses)
-        logs = np.log([[times[:steps], ratios[:steps]] for times, ratios in courses])
-        times, ratios = np.exp(logs.mean(axis=0))
+        times, ratios = _typical([course(row.entries[k], row) for row in standings])
         drawn = np.isfinite(ratios) & (ratios > ratios[-1])
         drawn[np.argmin(ratios)] = np.isfinite(ratios.min())
         if drawn.any():
             longer = np.maximum(100 * (ratios[drawn] - 1), LEAST)
             lines.append((label, _colour(label, group, lines), 1e3 * times[drawn], longer))
     return lines
+
+
+def _typical(courses: list[tuple[Floats, Floats]]) -> tuple[Floats, Floats]:
+    """Take medians over courses step by step; one that ends stays as it is while half go on."""
+    steps = int(np.median([len(times) for times, _ in courses]))
+    longer = [
+        [np.pad(values[:steps], (0, max(steps - len(values), 0)), 'edge') for values in each]
+        for each in courses
+    ]
+    times, ratios = np.quantile(longer, 0.5, axis=0, method='inverted_cdf')
+    return times, ratios
 
 
 def _over_spirals(standings: list[Standing]) -> list[Line]:

@@ -22,6 +22,8 @@ import numpy as np
 
 #: Requests in one turn at most, and time [s] after which it ends, about.
 TURN, TURN_TIME = 50, 0.05
+#: Runs of a request at most for one that is given a time.
+SEEDS_IN_TIME = 4
 
 
 class Effort(NamedTuple):
@@ -41,7 +43,7 @@ class Effort(NamedTuple):
     times : tuple of float
         What those that use a given time get [s].
     requests_in_time : int
-        Requests that they get on each problem.
+        Requests that they get on each problem at most.
 
     """
 
@@ -54,7 +56,7 @@ class Effort(NamedTuple):
     requests_in_time: int
 
 
-FULL = Effort(1.0, 1000, 1000, 200, 0.25, (0.001, 0.004, 0.016, 0.064, 0.256), 5)
+FULL = Effort(1.0, 1000, 1000, 200, 0.25, (0.001, 0.004, 0.016, 0.064, 0.256), 10)
 QUICK = Effort(0.15, 2, 100, 30, 0.05, (0.004, 0.064), 2)
 
 
@@ -87,7 +89,8 @@ class Entry:
     def run_in_time(self, problem: Problem, effort: Effort) -> None:
         """Answer requests with one time to use after the other."""
         assert self.competitor.within
-        numbers = np.arange(effort.requests_in_time) % len(problem.requests)
+        n_requests = len(problem.requests)
+        numbers = np.arange(min(effort.requests_in_time, SEEDS_IN_TIME * n_requests)) % n_requests
         for seconds in effort.times:
             with self.competitor.within(seconds)(problem) as solver:
                 self.in_time[seconds] = self._run(problem, solver, numbers, 0)
