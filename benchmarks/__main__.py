@@ -8,81 +8,84 @@ HNR_MAPS names a folder of further maps. The full run writes ``benchmarks/result
 from __future__ import annotations
 
 import argparse
+from collections.abc import Iterator
+from contextlib import contextmanager
 import os
 from pathlib import Path
-import sys
 import time
 
-from benchmarks import ompl
-from benchmarks.competitors import competitors
+from benchmarks.competitors import Competitor, lineup
+from benchmarks.every_problem import every_problem
+from benchmarks.first_path import first_path
 from benchmarks.picture import draw
-from benchmarks.problems import problems
-from benchmarks.properties import properties, Property
+from benchmarks.problems import missing_maps, Problem, problems
+from benchmarks.progress import say
+from benchmarks.properties import properties
 from benchmarks.race import FULL, QUICK, race, Standing
-from benchmarks.report import duel_table, length_table, property_table, report
+from benchmarks.report import missing_words, report
+from benchmarks.sections import Bench, SectionOf, verdict_table
+from benchmarks.short_path import short_path
+from benchmarks.success import success
 from hnr_planner.core import warm_up
 
 ROOT = Path(__file__).resolve().parents[1]
+
+#: The report, in this order.
+SECTIONS: tuple[SectionOf, ...] = (first_path, short_path, success, properties, every_problem)
 
 
 def main() -> None:
     """Measure, print, and write the report."""
     parser = argparse.ArgumentParser(prog='python -m benchmarks', description=__doc__)
-    parser.add_argument('--quick', action='store_true', help='two minutes, for a look')
+    parser.add_argument('--quick', action='store_true', help='a minute, for a look')
     quick = parser.parse_args().quick
     began = time.perf_counter()
-    missing = _missing()
     warm_up()
+    courses = problems(quick)
+    with _on_one_core():
+        taking_part, missing = lineup()
+        missing += missing_maps()
+        if missing:
+            say(missing_words(missing))
+        standings = [_race(problem, taking_part, quick) for problem in courses]
+    bench = Bench(quick, courses, standings, missing)
+    sections = [section(bench) for section in SECTIONS]
 
-    standings = _race(quick, with_ompl=not missing)
-    measured = _measure(quick)
-
-    places = ROOT / 'build' / 'benchmarks', ROOT / 'build' / 'benchmarks'
-    places = places if quick else (ROOT / 'benchmarks', ROOT / 'docs')
-    for place in places:
-        place.mkdir(parents=True, exist_ok=True)
-    results, picture = places[0] / 'results.md', places[1] / 'benchmark.png'
-    seconds = time.perf_counter() - began
-    results.write_text(report(standings, measured, seconds, missing))
+    results, picture = _places(quick)
     draw(standings, picture)
-    if not missing:
-        print(f'\nFirst path, ms:\n{duel_table(standings)}')
-    print(f'\nLength in the time of a wavefront, ms:\n{length_table(standings)}')
-    print(f'\nOurs alone:\n{property_table(measured)}')
-    print(f'\n{seconds:.0f} s. All of it: {results} and {picture}')
+    seconds = time.perf_counter() - began
+    beside = os.path.relpath(picture, results.parent)
+    results.write_text(report(bench, sections, seconds, beside))
+    say(f'\n{verdict_table([v for section in sections for v in section.verdicts])}')
+    say(f'\n{seconds:.0f} s. All of it: {results} and {picture}')
 
 
-def _missing() -> str:
-    """Say what OMPL's planners would need to take part; empty when they can."""
-    try:
-        ompl.build()
-    except ompl.MissingOmpl as reason:
-        print(f'Going on without OMPL. {reason}', file=sys.stderr)
-        return str(reason)
-    return ''
+def _race(problem: Problem, taking_part: list[Competitor], quick: bool) -> Standing:
+    """Run one problem, and say which paths were no good."""
+    began = time.perf_counter()
+    standing = race(problem, taking_part, QUICK if quick else FULL)
+    say(f'{problem.name}: {time.perf_counter() - began:.0f} s')
+    for entry in standing.entries:
+        for complaint in entry.judge.complaints[:1]:
+            say(f'{entry.competitor.label}: {complaint}')
+    return standing
 
 
-def _race(quick: bool, with_ompl: bool) -> list[Standing]:
-    """Run all problems, everybody on one core."""
-    taking_part, standings = competitors(with_ompl), []
+@contextmanager
+def _on_one_core() -> Iterator[None]:
+    """Let everybody, programs that are started here too, run on one core."""
     cores = os.sched_getaffinity(0)
     os.sched_setaffinity(0, {max(cores)})
-    for problem in problems(quick):
-        standings.append(race(problem, taking_part, QUICK if quick else FULL))
-        for entry in standings[-1].entries:
-            for complaint in entry.complaints[:1]:
-                print(f'\n{entry.competitor.name}: {complaint}', end='')
-        print()
+    yield
     os.sched_setaffinity(0, cores)
-    return standings
 
 
-def _measure(quick: bool) -> list[Property]:
-    measured = []
-    for row in properties(quick):
-        print(f'{row.what}: {row.measured}')
-        measured.append(row)
-    return measured
+def _places(quick: bool) -> tuple[Path, Path]:
+    folder = ROOT / 'build' / 'benchmarks'
+    places = (folder, folder) if quick else (ROOT / 'benchmarks', ROOT / 'docs')
+    for place in places:
+        place.mkdir(parents=True, exist_ok=True)
+    return places[0] / 'results.md', places[1] / 'benchmark.png'
 
 
 if __name__ == '__main__':

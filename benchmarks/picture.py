@@ -1,94 +1,169 @@
-"""The picture: time against length on the maps, and time against width on the spirals."""
+"""The picture: length against time on the maps, and time against width on the spirals."""
 
 from __future__ import annotations
 
 from pathlib import Path
 
+from benchmarks.competitors.ompl_planners import NATIVE, WHEEL
 from benchmarks.race import Standing
-from benchmarks.standings import Summary, summary
+from benchmarks.standings import course, summary
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.transforms import Bbox
 import numpy as np
+from numpy.typing import NDArray
 
-#: Colours that stay apart for all kinds of sight (Okabe and Ito); the shape says it once more.
-LOOKS = {'ours': ('#D55E00', 'o'), 'OMPL': ('#0072B2', 's'), 'grid': ('#009E73', '^')}
-#: Of the many, those whose line over the spirals says something.
-ON_SPIRALS = ('auto', 'RRTConnect', 'BKPIECE1', 'KPIECE1', 'SBL', 'A*', 'wavefront')
-#: Nearer to the best than this [%] is drawn here.
-LEAST = 0.01
-#: Where a name may stand beside its mark [points], best first.
-PLACES = (
-    ((6, 3), 'left'),
-    ((6, -9), 'left'),
-    ((-6, 3), 'right'),
-    ((-6, -9), 'right'),
-    ((6, 12), 'left'),
-    ((6, -18), 'left'),
+#: Groups of the two panels on the maps, and colours of the lines beside ours.
+PANELS = {'OMPL': (NATIVE, WHEEL), 'grid search': ('grid',)}
+OURS = ('#D55E00', '#E69F00', '#7F3B08', '#FDB863', '#B35806', '#F4A582')
+OTHERS = (
+    '#0072B2',
+    '#56B4E9',
+    '#009E73',
+    '#332288',
+    '#44AA99',
+    '#117733',
+    '#88CCEE',
+    '#999933',
+    '#661100',
+    '#AA4499',
+    '#CC79A7',
+    '#6699CC',
+    '#555555',
+    '#999999',
+)
+#: Of ours, those beside the others; of the many, those whose line over the spirals says something.
+SHOWN = ('auto (ours)', 'auto + simplify (ours)', 'auto, optimized (ours)')
+ON_SPIRALS = (
+    'auto (ours)',
+    f'RRTConnect ({NATIVE})',
+    f'BKPIECE1 ({NATIVE})',
+    f'KPIECE1 ({NATIVE})',
+    f'SBL ({NATIVE})',
+    f'RRTConnect ({WHEEL})',
+    'nano-astar (grid)',
+    'Theta* (grid)',
+    'wavefront (grid)',
+)
+#: What is nearer to the best than this [%] is drawn here.
+LEAST = 0.05
+#: Where a name may stand beside the end of its line [points], best first.
+PLACES = tuple(
+    ((x, y), align)
+    for y in (3, -9, 12, -18, 21, -27, 30, -36)
+    for x, align in ((6, 'left'), (-6, 'right'))
 )
 
-Mark = tuple[str, tuple[float, float]]
+Floats = NDArray[np.float64]
+#: A competitor's label, its colour, and its line.
+Line = tuple[str, str, Floats, Floats]
 
 
 def draw(standings: list[Standing], file: Path) -> None:
     """Draw the standings into a PNG file."""
-    figure = Figure(figsize=(10, 4.6), layout='constrained')
-    left, right = figure.subplots(1, 2)
-    on_maps = _maps(left, [row for row in standings if not row.problem.is_spiral])
-    on_spirals = _spirals(right, [row for row in standings if row.problem.is_spiral])
+    figure = Figure(figsize=(16, 6.5), layout='constrained')
+    panels = figure.subplots(1, 3)
+    maps = [row for row in standings if not row.problem.is_spiral]
+    spirals = [row for row in standings if row.problem.is_spiral]
+    marks = []
+    for axes, (name, groups) in zip(panels, PANELS.items(), strict=False):
+        marks.append(_plot(axes, _on_maps(maps, groups)))
+        axes.set(xscale='log', yscale='log', xlim=(10e-3, 1e3))
+        axes.set(xlabel='time [ms]', ylabel='longer than the best known [%]')
+        axes.set_title(
+            f'ours and {name}, {len(maps)} maps: medians, one run and more', fontsize=10
+        )
+    marks.append(_plot(panels[2], _over_spirals(spirals), marker='o'))
+    panels[2].invert_xaxis()
+    panels[2].set(yscale='log', xlabel='width of the corridor [m]', ylabel='time to a path [ms]')
+    panels[2].set_title('spirals: a line ends where most runs fail in 1 s', fontsize=10)
+    panels[2].margins(x=0.25)
     FigureCanvasAgg(figure).draw()  # settles where everything is
-    _name(left, on_maps)
-    _name(right, on_spirals)
-    figure.savefig(file, dpi=110)
+    for axes, ends in zip(panels, marks, strict=True):
+        axes.grid(alpha=0.3)
+        axes.spines[['top', 'right']].set_visible(False)
+        _name(axes, ends)
+    figure.savefig(file, dpi=100)
 
 
-def _maps(axes: Axes, standings: list[Standing]) -> list[Mark]:
-    marks = []
-    for name, group, found in _by_competitor(standings):
-        colour, marker = LOOKS[group]
-        seconds = np.array([row.seconds for row in found])
-        ratios = np.array([row.ratio for row in found])
-        if not (np.isfinite(seconds).all() and np.isfinite(ratios).all()):
+def _on_maps(standings: list[Standing], groups: tuple[str, ...]) -> list[Line]:
+    """Time and length after one run or step and after more, medians over the maps."""
+    lines: list[Line] = []
+    for k, label, group in _competitors(standings):
+        if group not in groups and label not in SHOWN:
             continue
-        time, ratio = 1e3 * np.exp(np.log(seconds).mean()), np.exp(np.log(ratios).mean())
-        longer = max(100 * (ratio - 1), LEAST)
-        axes.plot(time, longer, marker, color=colour, markersize=7)
-        marks.append((name, (time, longer)))
-    axes.set(xscale='log', yscale='log', xlabel='time [ms]', ylabel='longer than the best [%]')
-    axes.set_title(f'{len(standings)} maps: geometric means of the medians', fontsize=10)
-    _tidy(axes)
-    return marks
+        times, ratios = _typical([course(row.entries[k], row) for row in standings])
+        drawn = np.isfinite(ratios) & (ratios > ratios[-1])
+        drawn[np.argmin(ratios)] = np.isfinite(ratios.min())
+        if drawn.any():
+            longer = np.maximum(100 * (ratios[drawn] - 1), LEAST)
+            lines.append((label, _colour(label, group, lines), 1e3 * times[drawn], longer))
+    return lines
 
 
-def _spirals(axes: Axes, standings: list[Standing]) -> list[Mark]:
-    marks = []
+def _typical(courses: list[tuple[Floats, Floats]]) -> tuple[Floats, Floats]:
+    """Take medians over courses step by step; one that ends stays as it is while half go on."""
+    steps = int(np.median([len(times) for times, _ in courses]))
+    longer = [
+        [np.pad(values[:steps], (0, max(steps - len(values), 0)), 'edge') for values in each]
+        for each in courses
+    ]
+    times, ratios = np.quantile(longer, 0.5, axis=0, method='inverted_cdf')
+    return times, ratios
+
+
+def _over_spirals(standings: list[Standing]) -> list[Line]:
+    lines: list[Line] = []
     widths = np.array([float(standing.problem.name.split()[1]) for standing in standings])
-    for name, group, found in _by_competitor(standings):
-        if name not in ON_SPIRALS:
+    for k, label, group in _competitors(standings):
+        if label not in ON_SPIRALS:
             continue
-        colour, marker = LOOKS[group]
-        times = 1e3 * np.array([row.seconds for row in found])
-        style = {'color': colour, 'marker': marker, 'markersize': 4}
-        axes.plot(widths, times, linewidth=2.2 if group == 'ours' else 1.0, **style)
-        for k in np.flatnonzero(np.isfinite(times))[-1:]:
-            marks.append((name, (widths[k], times[k])))
-    axes.invert_xaxis()
-    axes.set(yscale='log', xlabel='width of the corridor [m]', ylabel='time to a path [ms]')
-    axes.set_title('spirals: a line ends where most runs fail in 1 s', fontsize=10)
-    axes.margins(x=0.15)
-    _tidy(axes)
-    return marks
+        times = np.array([summary(row.entries[k], row).seconds for row in standings])
+        drawn = np.isfinite(times)
+        if drawn.any():
+            colour = _colour(label, group, lines)
+            lines.append((label, colour, widths[drawn], 1e3 * times[drawn]))
+    return lines
 
 
-def _name(axes: Axes, marks: list[Mark]) -> None:
-    """Write a name beside each mark, where none stands yet."""
-    points = axes.transData.transform([at for _, at in marks])
-    taken = [Bbox.from_bounds(x - 4, y - 4, 8, 8) for x, y in points]
-    for name, at in marks:
+def _competitors(standings: list[Standing]) -> list[tuple[int, str, str]]:
+    entries = standings[0].entries if standings else []
+    return [(k, e.competitor.label, e.competitor.group) for k, e in enumerate(entries)]
+
+
+def _colour(label: str, group: str, lines: list[Line]) -> str:
+    """Choose the next colour of those for ours, or for all others."""
+    colours = OURS if group == 'ours' else OTHERS
+    used = {colour for _, colour, *_ in lines}
+    return next((colour for colour in colours if colour not in used), 'black')
+
+
+def _plot(axes: Axes, lines: list[Line], marker: str = '') -> list[tuple[str, str, float, float]]:
+    """Draw the lines; return where each ends, for its name."""
+    ends = []
+    for label, colour, x, y in lines:
+        width = 2.5 if label.endswith('(ours)') else 1.2
+        axes.plot(x, y, color=colour, linewidth=width, marker=marker, markersize=4)
+        axes.plot(x[0], y[0], 'o', color=colour, markersize=5)
+        ends.append((label.removesuffix(' (ours)').removesuffix(' (grid)'), colour, x[-1], y[-1]))
+    return ends
+
+
+def _name(axes: Axes, ends: list[tuple[str, str, float, float]]) -> None:
+    """Write a name beside the end of each line, where none stands yet."""
+    points = axes.transData.transform([(x, y) for _, _, x, y in ends] or np.empty((0, 2)))
+    taken = [Bbox.from_bounds(x - 3, y - 3, 6, 6) for x, y in points]
+    for name, colour, x, y in ends:
         for offset, align in PLACES:
             text = axes.annotate(
-                name, at, xytext=offset, textcoords='offset points', fontsize=8, ha=align
+                name,
+                (x, y),
+                xytext=offset,
+                textcoords='offset points',
+                fontsize=8,
+                color=colour,
+                ha=align,
             )
             box = text.get_window_extent()
             if not any(box.overlaps(other) for other in taken):
@@ -96,21 +171,3 @@ def _name(axes: Axes, marks: list[Mark]) -> None:
             if (offset, align) != PLACES[-1]:
                 text.remove()
         taken.append(box)
-
-
-def _by_competitor(standings: list[Standing]) -> list[tuple[str, str, list[Summary]]]:
-    if not standings:
-        return []
-    return [
-        (
-            entry.competitor.name,
-            entry.competitor.group,
-            [summary(standing.entries[k], standing) for standing in standings],
-        )
-        for k, entry in enumerate(standings[0].entries)
-    ]
-
-
-def _tidy(axes: Axes) -> None:
-    axes.grid(alpha=0.3)
-    axes.spines[['top', 'right']].set_visible(False)

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 import os
 from pathlib import Path
 
+from benchmarks.made_maps import clutter, maze, warehouse
 from hnr_planner.core import GridSpace
-from hnr_planner.maps import load_map, spiral
+from hnr_planner.maps import load_map, OccupancyMap, spiral
 import numpy as np
 from numpy.typing import NDArray
 
@@ -15,7 +17,9 @@ Floats = NDArray[np.float64]
 
 OFFICE = Path(__file__).resolve().parents[1] / 'config' / 'maps' / 'office.yaml'
 #: Robots [m] on the maps that were made by one; on others a point moves.
-ROBOT_RADIUS = {'depot': 0.22, 'tb3_sandbox': 0.22, 'office': 0.22}
+ROBOT_RADIUS = dict.fromkeys(
+    ('office', 'depot', 'tb3_sandbox', 'warehouse', 'maze', 'clutter'), 0.22
+)
 WIDTHS = (2.0, 1.6, 1.2, 1.0, 0.8, 0.6, 0.4)
 PAIRS = 20
 #: Least distance of a pair, as a part of the diagonal of the box around the free space.
@@ -39,25 +43,46 @@ class Problem:
         """Whether it is one of the spirals."""
         return self.name.startswith('spiral')
 
+    def with_requests(self, requests: Floats) -> Problem:
+        """Return the same space with other requests."""
+        return Problem(self.name, self.space, requests)
+
+    @cached_property
+    def blocked_in_kernel(self) -> NDArray[np.bool_]:
+        """The blocked cells in the kernel frame, with a blocked rim: (rows + 2, columns + 2)."""
+        return self.space.data.free_distance == 0
+
 
 def problems(quick: bool) -> list[Problem]:
     """Build all problems, or few of them for a quick look."""
-    files = [OFFICE]
-    folder = os.environ.get('HNR_MAPS')
-    if folder:
-        files += sorted([*Path(folder).glob('*.yaml'), *Path(folder).glob('*.map')])
+    maps = {'warehouse': warehouse(), 'maze': maze(), 'clutter': clutter()}
+    maps |= {file.stem: load_map(file) for file in _files()}
     if quick:
-        files = [file for file in files if file.stem in ('office', 'depot')]
+        maps = {name: maps[name] for name in ('office', 'depot') if name in maps}
     widths = (1.6, 0.8) if quick else WIDTHS
-    return [_map_problem(file) for file in files] + [_spiral_problem(width) for width in widths]
+    return [_map_problem(*named) for named in maps.items()] + [
+        _spiral_problem(width) for width in widths
+    ]
 
 
-def _map_problem(file: Path) -> Problem:
-    grid = load_map(file)
-    space = GridSpace.from_occupancy(
-        grid.data, grid.resolution, grid.origin, robot_radius=ROBOT_RADIUS.get(file.stem, 0.0)
-    )
-    return Problem(file.stem, space, pairs(space, PAIRS))
+def _files() -> list[Path]:
+    folder = os.environ.get('HNR_MAPS')
+    if not folder:
+        return [OFFICE]
+    return [OFFICE, *sorted([*Path(folder).glob('*.yaml'), *Path(folder).glob('*.map')])]
+
+
+def missing_maps() -> list[str]:
+    """Say that only the maps that anybody has take part, where it is so."""
+    if len(_files()) > 1:
+        return []
+    return ['Maps of others: HNR_MAPS names no folder that holds any (.yaml of map_server, .map).']
+
+
+def _map_problem(name: str, grid: OccupancyMap) -> Problem:
+    radius = ROBOT_RADIUS.get(name, 0.0)
+    space = GridSpace.from_occupancy(grid.data, grid.resolution, grid.origin, robot_radius=radius)
+    return Problem(name, space, pairs(space, PAIRS))
 
 
 def _spiral_problem(width: float) -> Problem:

@@ -7,9 +7,11 @@ from contextlib import contextmanager
 from statistics import median
 import threading
 import time
-from typing import Any, NamedTuple
+from typing import Any
 
 from benchmarks.problems import OFFICE, pairs
+from benchmarks.progress import show
+from benchmarks.sections import Bench, Section, Verdict, verdict_table
 import cv2
 from hnr_planner.core import GridSpace, plan
 from hnr_planner.maps import load_map, spiral
@@ -23,17 +25,16 @@ READY_SIDE = 4000
 LOST = 0.2e-3
 
 
-class Property(NamedTuple):
-    """What was measured, in words, and what it should be."""
-
-    what: str
-    measured: str
-    target: str
-    met: bool
-
-
-def properties(quick: bool) -> Iterator[Property]:
+def properties(bench: Bench) -> Section:
     """Measure one after the other."""
+    measured = []
+    for verdict in _measure(bench.quick):
+        show(f'{verdict.what}: {verdict.measured}')
+        measured.append(verdict)
+    return Section('Ours alone', verdict_table(measured), measured)
+
+
+def _measure(quick: bool) -> Iterator[Verdict]:
     yield _overhead(2000 if quick else 20_000)
     yield from _readiness(2 if quick else 7)
     yield _growth(ENLARGED[:2] if quick else ENLARGED, 200 if quick else 1000)
@@ -41,12 +42,12 @@ def properties(quick: bool) -> Iterator[Property]:
     yield _cancellation(40 if quick else 200)
 
 
-def _overhead(n_calls: int) -> Property:
+def _overhead(n_calls: int) -> Verdict:
     space = GridSpace.from_blocked(np.zeros((100, 100), dtype=bool))
     times = [_timed(lambda: plan(space, (10.0, 10.0), (90.0, 80.0))) for _ in range(n_calls)]
     typical = 1e6 * median(times)
     measured = f'{typical:.1f} us (p95 {1e6 * np.quantile(times, 0.95):.1f})'
-    return Property('call of plan() on an empty map', measured, '30 us', typical <= 30.0)
+    return Verdict('call of plan() on an empty map', '30 us', measured, typical <= 30.0)
 
 
 def _office(side: int) -> NDArray[np.int8]:
@@ -56,7 +57,7 @@ def _office(side: int) -> NDArray[np.int8]:
     return data[np.ix_(rows, columns)]
 
 
-def _readiness(n_repeats: int) -> Iterator[Property]:
+def _readiness(n_repeats: int) -> Iterator[Verdict]:
     data = np.kron(_office(BUILDING), np.ones((READY_SIDE // BUILDING,) * 2, dtype=np.int8))
     free = (data < 65).astype(np.uint8)
     threads = cv2.getNumThreads()
@@ -71,20 +72,21 @@ def _readiness(n_repeats: int) -> Iterator[Property]:
                 _timed(lambda r=radius: GridSpace.from_occupancy(data, 0.05, robot_radius=r))
             )
         factor = median(ours) / median(exact)
-        yield Property(
+        yield Verdict(
             f'a map of {READY_SIDE}^2 cells ready, robot radius {radius:g} m',
-            f'{1e3 * median(ours):.0f} ms, {factor:.2f} x the exact distance transform',
-            '3 x',
+            "3 x OpenCV's exact distance transform",
+            f'{1e3 * median(ours):.0f} ms, {factor:.2f} x',
             factor <= 3.0,
         )
     cv2.setNumThreads(threads)
     space = GridSpace.from_occupancy(data, 0.05)
     arrays = (*space.data, space._wall_distance)
     n_bytes = sum(array.nbytes for array in arrays) / data.size
-    yield Property('memory of a ready map', f'{n_bytes:.1f} bytes a cell', '12', n_bytes <= 12.0)
+    measured = f'{n_bytes:.1f}'
+    yield Verdict('memory of a ready map', '12 bytes a cell', measured, n_bytes <= 12.0)
 
 
-def _growth(factors: tuple[int, ...], n_runs: int) -> Property:
+def _growth(factors: tuple[int, ...], n_runs: int) -> Verdict:
     """Time the same requests in the same building, with the cells of the coarsest repeated."""
     coarse = _office(BUILDING)
     requests = pairs(GridSpace.from_occupancy(coarse, 1.0), 10)
@@ -101,7 +103,7 @@ def _growth(factors: tuple[int, ...], n_runs: int) -> Property:
     each = ', '.join(f'{1e3 * seconds:.3f}' for seconds in typical)
     factor = max(typical) / typical[0]
     measured = f'{each} ms for {sizes} cells: {factor:.2f} x'
-    return Property('growth of the time to the first path', measured, '4 x', factor <= 4.0)
+    return Verdict('growth of the time to the first path', '4 x', measured, factor <= 4.0)
 
 
 def _endless() -> tuple[GridSpace, Any, Any]:
@@ -110,7 +112,7 @@ def _endless() -> tuple[GridSpace, Any, Any]:
     return GridSpace.from_blocked(made.blocked, made.resolution), made.start, made.goal
 
 
-def _time_limit(n_calls: int) -> Property:
+def _time_limit(n_calls: int) -> Verdict:
     space, start, goal = _endless()
     worst = {}
     for algorithm in ('auto', 'hit_and_run', 'rrt'):
@@ -124,7 +126,7 @@ def _time_limit(n_calls: int) -> Property:
     return _summed('time limit overrun, p99', worst, 2.0)
 
 
-def _cancellation(n_calls: int) -> Property:
+def _cancellation(n_calls: int) -> Verdict:
     space, start, goal = _endless()
     worst = {}
     for algorithm in ('auto', 'hit_and_run', 'rrt'):
@@ -177,14 +179,14 @@ class _Lateness:
         return 1e3 * float(np.quantile(self.undisturbed + self.disturbed, 0.99))
 
 
-def _summed(what: str, late: dict[str, _Lateness], target: float) -> Property:
+def _summed(what: str, late: dict[str, _Lateness], target: float) -> Verdict:
     words = [
         f'{name} {calls.worst:.2f} ms ({len(calls.undisturbed)} calls; '
         f'{calls.worst_of_all:.1f} with {len(calls.disturbed)} that lost the core)'
         for name, calls in late.items()
     ]
     met = max(calls.worst for calls in late.values()) <= target
-    return Property(what, ', '.join(words), f'{target:g} ms', met)
+    return Verdict(what, f'{target:g} ms', ', '.join(words), met)
 
 
 def _timed(call: Callable[[], Any]) -> float:

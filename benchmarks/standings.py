@@ -1,17 +1,19 @@
-"""Numbers from runs: how often, how fast, how short, and what is asked of ours."""
+"""Numbers from runs: how often, how fast, how short, and how soon short."""
 
 from __future__ import annotations
 
+from itertools import chain
 from typing import NamedTuple
 
+from benchmarks.judge import Record
 from benchmarks.race import Entry, Standing
 import numpy as np
+from numpy.typing import NDArray
 
-#: What a call from Python may cost above the best of the others [s].
-CALL = 30e-6
-#: Below this time of RRTConnect [s] it is no match on speed.
-NO_MATCH = 0.1e-3
-HALF, MEDIAN_LENGTH, P95_LENGTH = 0.5, 1.01, 1.05
+#: Within this ratio of the best known length a path counts as short.
+SHORT = 1.01
+
+Floats = NDArray[np.float64]
 
 
 class Summary(NamedTuple):
@@ -19,7 +21,8 @@ class Summary(NamedTuple):
     A competitor on one problem.
 
     Times in seconds, lengths as ratios over the best known; a run without a valid path counts as
-    endless in the times, and is left out of the lengths.
+    endless in the times, and is left out of the lengths. ``soon`` is the time to a path within
+    1 % of the best known.
     """
 
     runs: int
@@ -30,6 +33,8 @@ class Summary(NamedTuple):
     ratio: float
     ratio_p95: float
     clearance: float
+    soon: float
+    soon_p95: float
 
 
 def summary(entry: Entry, standing: Standing) -> Summary:
@@ -39,80 +44,77 @@ def summary(entry: Entry, standing: Standing) -> Summary:
     seconds = np.where(valid, [record.seconds for record in records], np.inf)
     ratios = np.array([record.length / standing.best[record.request] for record in records])[valid]
     clearances = [record.clearance for record in records if not np.isnan(record.clearance)]
+    soon = np.concatenate(
+        [_soon(times, ratios) for times, ratios in improvements(entry, standing)]
+    )
     return Summary(
         runs=len(records),
         success=float(valid.mean()),
         invalid=sum(record.found for record in records) - int(valid.sum()),
-        seconds=_quantile(seconds, 0.5),
-        seconds_p95=_quantile(seconds, 0.95),
-        ratio=_quantile(ratios, 0.5),
-        ratio_p95=_quantile(ratios, 0.95),
+        seconds=quantile(seconds, 0.5),
+        seconds_p95=quantile(seconds, 0.95),
+        ratio=quantile(ratios, 0.5),
+        ratio_p95=quantile(ratios, 0.95),
         clearance=min(clearances, default=np.nan),
+        soon=quantile(soon, 0.5),
+        soon_p95=quantile(soon, 0.95),
     )
 
 
-def _quantile(values: np.ndarray, part: float) -> float:
+def quantile(values: Floats, part: float) -> float:
     """Smallest of the values that ``part`` of them do not exceed; nan for none."""
     if len(values) == 0:
         return np.nan
     return float(np.quantile(values, part, method='inverted_cdf'))
 
 
-class Duel(NamedTuple):
+def improvements(entry: Entry, standing: Standing) -> list[tuple[Floats, Floats]]:
     """
-    Ours against OMPL's on one problem: what is asked, and whether it is so.
+    How the path of each request gets shorter with time: times (k, n) [s] and ratios (k, n).
 
-    ``rival`` is RRTConnect, ``fastest`` the best of OMPL's planners there, picked after the fact.
+    One that can use a given time is asked anew with more and more of it; k is 1. The others begin
+    again with another seed and keep the shortest path: the time is that of all runs so far, and
+    each of the k runs of the request is once the first.
     """
-
-    problem: str
-    auto: Summary
-    rival: Summary
-    fastest: str
-    fastest_seconds: float
-    failures: list[str]
-
-
-def duel(standing: Standing) -> Duel:
-    """Compare the time to the first path."""
-    of = {entry.competitor.name: summary(entry, standing) for entry in standing.entries}
-    times = {
-        entry.competitor.name: of[entry.competitor.name].seconds
-        for entry in standing.entries
-        if (entry.competitor.group, entry.competitor.aim) == ('OMPL', 'first')
-    }
-    auto, rival = of['auto'], of['RRTConnect']
-    fastest = min(times, key=times.__getitem__)
-    failures = []
-    if auto.seconds > times[fastest] + CALL:
-        failures.append('slower than the fastest')
-    if rival.seconds > NO_MATCH and auto.seconds > HALF * rival.seconds + CALL:
-        failures.append('more than half of RRTConnect')
-    if rival.seconds_p95 > NO_MATCH and auto.seconds_p95 > rival.seconds_p95:
-        failures.append("p95 above RRTConnect's")
-    if auto.success < 1.0:
-        failures.append(f'success {100 * auto.success:.1f} %')
-    return Duel(standing.problem.name, auto, rival, fastest, times[fastest], failures)
+    found = []
+    for request, best in enumerate(standing.best):
+        if entry.in_time:
+            times, ratios = _of_request(request, best, [*chain(*entry.in_time.values())])
+            order = np.argsort(times)[np.newaxis]
+            times, ratios = times[order], ratios[order]
+        else:
+            times, ratios = _of_request(request, best, entry.records)
+            around = np.add.outer(np.arange(len(times)), np.arange(len(times))) % len(times)
+            times = np.cumsum(times[around], axis=1)
+            ratios = np.minimum.accumulate(ratios[around], axis=1)
+        if times.size:
+            found.append((times, ratios))
+    return found
 
 
-class Lengths(NamedTuple):
-    """Ours, optimized in the time of a wavefront, on one problem."""
-
-    problem: str
-    optimized: Summary
-    wavefront: Summary
-    failures: list[str]
+def _of_request(request: int, best: float, records: list[Record]) -> tuple[Floats, Floats]:
+    own = [record for record in records if record.request == request]
+    times = np.array([record.seconds for record in own])
+    return times, np.array([record.length for record in own]) / best
 
 
-def lengths(standing: Standing) -> Lengths:
-    """Compare the lengths with what is asked."""
-    of = {entry.competitor.name: summary(entry, standing) for entry in standing.entries}
-    ours, waves = of['auto, optimized'], of['wavefront']
-    failures = []
-    if not ours.ratio <= MEDIAN_LENGTH:
-        failures.append(f'median above {MEDIAN_LENGTH:g}')
-    if not ours.ratio_p95 <= P95_LENGTH:
-        failures.append(f'p95 above {P95_LENGTH:g}')
-    if ours.seconds > max(waves.seconds, 1e-3) * 1.1:
-        failures.append('longer than the wavefront')
-    return Lengths(standing.problem.name, ours, waves, failures)
+def _soon(times: Floats, ratios: Floats) -> Floats:
+    """Return the first times (k,) at which a path is short; inf for never."""
+    return np.where(ratios <= SHORT, times, np.inf).min(axis=1)
+
+
+def course(entry: Entry, standing: Standing) -> tuple[Floats, Floats]:
+    """
+    Return how the path gets shorter from step to step: times (k,) [s] and ratios (k,), medians.
+
+    A step is one more run, or more time for one that can use it; it counts while half of the
+    requests get there.
+    """
+    found = improvements(entry, standing)
+    lengths = [times.shape[1] for times, _ in found]
+    steps = range(int(np.median(lengths)) if lengths else 0)
+    at = [[of for of in found if of[0].shape[1] > k] for k in steps]
+    times = [np.concatenate([times[:, k] for times, _ in at[k]]) for k in steps]
+    ratios = [np.concatenate([ratios[:, k] for _, ratios in at[k]]) for k in steps]
+    medians = [[quantile(values, 0.5) for values in each] for each in (times, ratios)]
+    return np.array(medians[0]), np.array(medians[1])

@@ -148,7 +148,7 @@ def test_requirements_of_the_tests_are_what_they_import_besides(
     distribution: Any, manifest: ElementTree.Element
 ) -> None:
     imported = {name for name in libraries(*ROOT.glob('test/**/*.py')) if not is_ros(name)}
-    imported -= libraries(*map(source, MODULES)) | {'distutils', 'test'}
+    imported -= libraries(*map(source, MODULES)) | {'benchmarks', 'distutils', 'test'}
     tools = {'colcon-common-extensions', 'setuptools'}
     on_pypi = names(distribution.extras_require['test'])
     in_rosdep = {element.text for element in manifest.iter('test_depend')}

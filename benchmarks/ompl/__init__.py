@@ -1,5 +1,12 @@
-"""OMPL's planners in C++, behind a pipe."""
+"""OMPL's planners, in C++ and from PyPI, each behind a pipe."""
 
-from benchmarks.ompl.driver import build, MissingOmpl, Session, version
+from benchmarks.ompl.driver import (
+    MissingOmpl,
+    native,
+    native_version,
+    Session,
+    wheel,
+    wheel_version,
+)
 
-__all__ = ['MissingOmpl', 'Session', 'build', 'version']
+__all__ = ['MissingOmpl', 'Session', 'native', 'native_version', 'wheel', 'wheel_version']

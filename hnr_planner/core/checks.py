@@ -57,6 +57,14 @@ def check_number(name: str, value: Any, lower: float, upper: float = math.inf) -
     return number
 
 
+def check_positive(name: str, value: Any) -> float:
+    """Return ``value`` as a float above 0, which may be inf, or raise RequestError."""
+    number = check_number(name, value, 0.0)
+    if number == 0.0:
+        raise RequestError(f'{name} must be above 0, got 0.0')
+    return number
+
+
 def check_count(name: str, value: Any, lower: int) -> int:
     """Return ``value`` as an int of at least ``lower``, or raise RequestError."""
     try:

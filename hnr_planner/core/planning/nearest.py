@@ -1,10 +1,11 @@
 """
-Exact nearest neighbours of a growing set of points.
+Exact nearest neighbours of growing sets of points.
 
 A tree of boxes: each node halves its box in the middle, along one axis after the other, and each
 leaf holds a short list of points. Boxes halve whatever the order in which points come, so that a
 corridor explored from one end to the other gives no deeper a tree than points at random; insertion
-and query cost like the logarithm of the number of points.
+and query cost like the logarithm of the number of points. Several sets may share the memory of one
+tree, each with a root of its own: compiled code pays for every array that it hands on.
 """
 
 from typing import NamedTuple
@@ -22,12 +23,12 @@ DEPTH_MAX = 100
 
 class BoxTree(NamedTuple):
     """
-    Points in leaves of a tree of boxes.
+    Points in leaves of trees of boxes, one tree for each root.
 
     Attributes
     ----------
     lower, upper : (dim,)
-        The box of the root, node 0.
+        The box of the roots, the first nodes.
     child : (nodes, 2) int32
         Lower and upper half; NONE in a leaf.
     split : (nodes,)
@@ -40,6 +41,9 @@ class BoxTree(NamedTuple):
         Points in a leaf.
     n_nodes : (1,) int64
         Nodes in use.
+    waiting : (DEPTH_MAX + 2, 3)
+        Room for a query's list of halves still to visit, so that it need not ask for memory: node,
+        depth, and squared distance to the plane before it. A tree answers one query at a time.
 
     """
 
@@ -51,11 +55,12 @@ class BoxTree(NamedTuple):
     following: NDArray[np.int32]
     size: NDArray[np.int32]
     n_nodes: NDArray[np.int64]
+    waiting: Floats
 
 
-def empty_box_tree(lower: Floats, upper: Floats, capacity: int) -> BoxTree:
-    """Return a tree without points that has room for ``capacity`` of them."""
-    nodes = 2 * capacity + 1
+def empty_box_tree(lower: Floats, upper: Floats, capacity: int, n_roots: int = 1) -> BoxTree:
+    """Return ``n_roots`` trees without points that have room for ``capacity`` of them in all."""
+    nodes = 2 * capacity + n_roots
     return BoxTree(
         lower=lower,
         upper=upper,
@@ -64,13 +69,15 @@ def empty_box_tree(lower: Floats, upper: Floats, capacity: int) -> BoxTree:
         first=np.full(nodes, NONE, dtype=np.int32),
         following=np.full(capacity, NONE, dtype=np.int32),
         size=np.zeros(nodes, dtype=np.int32),
-        n_nodes=np.ones(1, dtype=np.int64),
+        n_nodes=np.full(1, n_roots, dtype=np.int64),
+        waiting=np.zeros((DEPTH_MAX + 2, 3)),
     )
 
 
 def grown(tree: BoxTree, capacity: int) -> BoxTree:
-    """Return the same tree with room for ``capacity`` points."""
-    larger = empty_box_tree(tree.lower, tree.upper, capacity)
+    """Return the same trees with room for ``capacity`` points."""
+    n_roots = len(tree.child) - 2 * len(tree.following)
+    larger = empty_box_tree(tree.lower, tree.upper, capacity, n_roots)
     for name in ('child', 'split', 'first', 'following', 'size', 'n_nodes'):
         old = getattr(tree, name)
         getattr(larger, name)[: len(old)] = old
@@ -78,11 +85,11 @@ def grown(tree: BoxTree, capacity: int) -> BoxTree:
 
 
 @kernel
-def insert(tree, points, k):
-    """Add point ``k`` of ``points`` (n, dim) to the tree; points are added in their order."""
+def insert(tree, points, k, root=0):
+    """Add point ``k`` of ``points`` (n, dim) to the tree of a root; each row to one tree."""
     dim = points.shape[1]
     lower, upper = tree.lower.copy(), tree.upper.copy()
-    node, depth = 0, 0
+    node, depth = root, 0
     while tree.child[node, 0] != NONE:
         axis = depth % dim
         if points[k, axis] < tree.split[node]:
@@ -120,28 +127,25 @@ def _halve(tree, points, leaf, axis, middle):
 
 
 @kernel
-def nearest(tree, points, x):
-    """Index of the point nearest to ``x``; the one added first where several are as near."""
+def nearest(tree, points, x, root=0):
+    """Index of a root's point nearest to ``x``; the first one where several are as near."""
     dim = points.shape[1]
-    # Halves still to visit: node, depth, and squared distance from x to the plane before it.
-    nodes = np.empty(DEPTH_MAX + 2, dtype=np.int64)
-    depths = np.empty(DEPTH_MAX + 2, dtype=np.int64)
-    apart = np.empty(DEPTH_MAX + 2)
-    nodes[0], depths[0], apart[0] = 0, 0, 0.0
-    waiting = 1
+    waiting = tree.waiting
+    waiting[0, 0], waiting[0, 1], waiting[0, 2] = root, 0.0, 0.0
+    n_waiting = 1
     best, best_squared = NONE, np.inf
-    while waiting > 0:
-        waiting -= 1
-        node, depth = nodes[waiting], depths[waiting]
-        if apart[waiting] > best_squared:
+    while n_waiting > 0:
+        n_waiting -= 1
+        if waiting[n_waiting, 2] > best_squared:
             continue
+        node, depth = int(waiting[n_waiting, 0]), int(waiting[n_waiting, 1])
         while tree.child[node, 0] != NONE:
             offset = x[depth % dim] - tree.split[node]
             near = 0 if offset < 0.0 else 1
             depth += 1
-            nodes[waiting], depths[waiting] = tree.child[node, 1 - near], depth
-            apart[waiting] = offset * offset
-            waiting += 1
+            waiting[n_waiting, 0], waiting[n_waiting, 1] = tree.child[node, 1 - near], depth
+            waiting[n_waiting, 2] = offset * offset
+            n_waiting += 1
             node = tree.child[node, near]
         k = tree.first[node]
         while k != NONE:

@@ -9,8 +9,7 @@ from dataclasses import dataclass, field
 import math
 from typing import ClassVar
 
-from hnr_planner.core.checks import check_number, Floats
-from hnr_planner.core.errors import RequestError
+from hnr_planner.core.checks import check_positive, Floats
 from hnr_planner.core.kernels import kernel
 from hnr_planner.core.planning.lengths import norm
 from hnr_planner.core.planning.nearest import BoxTree, empty_box_tree, grown, insert, nearest
@@ -42,10 +41,7 @@ class RRT:
     name: ClassVar[str] = 'rrt'
 
     def __post_init__(self) -> None:
-        max_step = check_number('max_step', self.max_step, 0.0)
-        if max_step == 0.0:
-            raise RequestError('max_step must be above 0, got 0.0')
-        object.__setattr__(self, 'max_step', max_step)
+        object.__setattr__(self, 'max_step', check_positive('max_step', self.max_step))
 
     def start(self, problem: Problem, rng: Stream) -> 'RRTSearch':
         """Start a tree at the problem's start."""

@@ -58,6 +58,20 @@ def test_nearest_is_the_first_of_the_nearest_points(name: str):
         assert squared[nearest(tree, points, x)] == squared.min()
 
 
+def test_each_root_answers_for_its_own_points():
+    rng = np.random.default_rng(3)
+    points, owners = rng.random((3000, 2)), rng.integers(3, size=3000)
+    tree = empty_box_tree(np.zeros(2), np.ones(2), 10, n_roots=3)
+    for k in range(len(points)):
+        if k == len(tree.following):
+            tree = grown(tree, 2 * k)
+        insert(tree, points, k, owners[k])
+    for x in rng.random((200, 2)):
+        for root in range(3):
+            squared = np.where(owners == root, ((points - x) ** 2).sum(axis=1), np.inf)
+            assert nearest(tree, points, x, root) == squared.argmin()
+
+
 def test_of_two_equal_points_the_first_is_nearest():
     points = np.repeat(np.random.default_rng(2).random((500, 2)), 2, axis=0)
     tree = tree_of(points)

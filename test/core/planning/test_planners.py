@@ -3,15 +3,13 @@
 from itertools import pairwise
 import math
 from test.brute_force import blocked_cells, chord_by_search, path_collisions
+from test.core.planning.searches import start_search
 from test.laws import maps
 
 from hnr_planner.core import ALGORITHMS, GridSpace, plan, PlannerStatus, RRT
-from hnr_planner.core.planning.algorithms import make_planner
-from hnr_planner.core.planning.search import Problem
 from hnr_planner.core.streams import stream, uniform
 from hnr_planner.maps import spiral
 import numpy as np
-from numpy.typing import NDArray
 import pytest
 
 NAMES = [name for name in ALGORITHMS if name != 'auto']
@@ -19,24 +17,6 @@ BLOCKED = maps.rooms(60, 80, 10, seed=4)
 ORIGIN = (2.0, -1.0, 0.4)
 SPACE = GridSpace.from_blocked(BLOCKED, 0.1, ORIGIN)
 START, GOAL = SPACE.cell_centres(2, 2), SPACE.cell_centres(57, 75)
-
-
-def start_search(algorithm: str, blocked: NDArray[np.bool_], seed: int, goal_radius: float = 0.0):
-    """Start a search in cells, from the lower left to the upper right cell."""
-    space = GridSpace.from_blocked(blocked)
-    lower, upper = space.kernel_bounds
-    problem = Problem(
-        space.data,
-        lower,
-        upper,
-        lower + 0.5,
-        upper - 0.5,
-        goal_radius,
-        space.margin,
-        space.typical_clearance,
-        space.scale,
-    )
-    return make_planner(algorithm, {}).start(problem, stream(seed))
 
 
 # -- every planner -------------------------------------------------------------------------------

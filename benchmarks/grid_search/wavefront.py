@@ -1,66 +1,13 @@
-"""
-Grid search, as most robots plan today: A* and a wavefront over the whole map, compiled.
+"""A wavefront over the whole map and the way down its potential, as NavFn plans."""
 
-Paths lead from cell centre to cell centre, to one of eight neighbours at each step, and cut no
-corner: a diagonal step needs all four cells free. ``free_distance`` is that of a compiled grid,
-0 where a cell is blocked, with a blocked rim.
-"""
-
-from heapq import heappop, heappush
 import math
 
+from benchmarks.grid_search.cells import cell_of, DIAGONAL, may_step, STEPS
 from hnr_planner.core.kernels import kernel
-from hnr_planner.core.spaces.primitives import sees
 import numpy as np
 
-DIAGONAL = math.sqrt(2.0)
-STEPS = ((0, 1), (1, 0), (0, -1), (-1, 0), (1, 1), (1, -1), (-1, 1), (-1, -1))
 #: A wave spreads this far [cells] before its late cells are looked at.
 WAVE = 2.0
-
-
-@kernel
-def a_star(grid, start, goal):
-    """Find a shortest path (m, 2) over neighbouring cells; the heuristic is their distance."""
-    free_distance = grid.free_distance
-    columns = free_distance.shape[1]
-    source, target = _cell(start, columns), _cell(goal, columns)
-    cost = np.full(free_distance.size, np.inf, dtype=np.float32)
-    parent = np.full(free_distance.size, -1, dtype=np.int32)
-    closed = np.zeros(free_distance.size, dtype=np.bool_)
-    cost[source] = 0.0
-    queue = [(_octile(source, target, columns), source)]
-    while len(queue) > 0:
-        cell = heappop(queue)[1]
-        if cell == target:
-            break
-        if closed[cell]:
-            continue
-        closed[cell] = True
-        for down, right in STEPS:
-            near = cell + down * columns + right
-            if closed[near] or not _may_step(free_distance, cell, down, right):
-                continue
-            length = cost[cell] + (DIAGONAL if down != 0 and right != 0 else 1.0)
-            if length < cost[near]:
-                cost[near] = length
-                parent[near] = cell
-                heappush(queue, (length + _octile(near, target, columns), near))
-    return _trace(parent, source, target, columns)
-
-
-@kernel
-def pull_string(grid, path):
-    """Keep of a path (m, 2) only vertices that do not see the one before their last."""
-    kept = np.empty_like(path)
-    kept[0] = path[0]
-    n_kept = 1
-    for k in range(2, len(path)):
-        if not sees(grid, kept[n_kept - 1], path[k]):
-            kept[n_kept] = path[k - 1]
-            n_kept += 1
-    kept[n_kept] = path[-1]
-    return kept[: n_kept + 1]
 
 
 @kernel
@@ -74,7 +21,7 @@ def wavefront(grid, start, goal):
     free_distance = grid.free_distance
     columns = free_distance.shape[1]
     potential = np.full(free_distance.size, np.inf, dtype=np.float32)
-    source, target = _cell(start, columns), _cell(goal, columns)
+    source, target = cell_of(start, columns), cell_of(goal, columns)
     _spread(free_distance.ravel(), columns, target, potential)
     path = [source]
     while path[-1] != target:
@@ -141,45 +88,10 @@ def _lowest_neighbour(free_distance, potential, cell):
     lowest, steepest = cell, 0.0
     for down, right in STEPS:
         near = cell + down * columns + right
-        if not _may_step(free_distance, cell, down, right):
+        if not may_step(free_distance, cell, down, right):
             continue
         length = DIAGONAL if down != 0 and right != 0 else 1.0
         slope = (potential[cell] - potential[near]) / length
         if slope > steepest:
             lowest, steepest = near, slope
     return lowest
-
-
-@kernel
-def _may_step(free_distance, cell, down, right):
-    row, column = cell // free_distance.shape[1], cell % free_distance.shape[1]
-    if free_distance[row + down, column + right] == 0:
-        return False
-    if down == 0 or right == 0:
-        return True
-    return free_distance[row + down, column] != 0 and free_distance[row, column + right] != 0
-
-
-@kernel
-def _cell(point, columns):
-    return int(point[1]) * columns + int(point[0])
-
-
-@kernel
-def _octile(a, b, columns):
-    rows_apart = abs(a // columns - b // columns)
-    columns_apart = abs(a % columns - b % columns)
-    shorter = min(rows_apart, columns_apart)
-    return max(rows_apart, columns_apart) + (DIAGONAL - 1.0) * shorter
-
-
-@kernel
-def _trace(parent, source, target, columns):
-    cells = [target]
-    while cells[-1] != source:
-        cells.append(parent[cells[-1]])
-    path = np.empty((len(cells), 2))
-    for k in range(len(cells)):
-        cell = cells[len(cells) - 1 - k]
-        path[k] = cell % columns + 0.5, cell // columns + 0.5
-    return path

@@ -1,0 +1,13 @@
+"""Who takes part: ours, OMPL's, grid search. Each answers requests and says how long it took."""
+
+from benchmarks.competitors.competitor import (
+    Competitor,
+    Missing,
+    Run,
+    Solver,
+    SolverOf,
+    TIME_LIMIT,
+)
+from benchmarks.competitors.lineup import lineup
+
+__all__ = ['TIME_LIMIT', 'Competitor', 'Missing', 'Run', 'Solver', 'SolverOf', 'lineup']

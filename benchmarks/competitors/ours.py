@@ -1,0 +1,69 @@
+"""Ours: the whole call of ``plan()`` from Python."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from statistics import median
+import time
+from typing import Any
+
+from benchmarks.competitors.competitor import Competitor, Run, Solver, SolverOf, TIME_LIMIT
+from benchmarks.competitors.grid import search_with
+from benchmarks.grid_search import wavefront
+from benchmarks.problems import Floats, Problem
+from hnr_planner.core import plan
+import numpy as np
+
+#: A wavefront's time on a small map is no time to optimize in [s].
+LEAST_TIME = 1e-3
+#: Runs that tell how long a wavefront takes, and the part of its time that is used.
+CALIBRATION, USED = 40, 0.95
+
+
+def ours() -> list[Competitor]:
+    """List ours."""
+    first = [
+        Competitor(name, 'ours', 'first', _plan(algorithm=name, simplify=False), runs_least=least)
+        for name, least in (('auto', 200), ('hit_and_run', 3), ('rrt', 3), ('rrt_connect', 3))
+    ]
+    return [
+        *first,
+        Competitor('auto + simplify', 'ours', 'short', _plan(algorithm='auto'), runs_least=100),
+        Competitor('auto, optimized', 'ours', 'short', _optimized, _optimized_for, runs_least=100),
+    ]
+
+
+def _plan(**settings: Any) -> SolverOf:
+    @contextmanager
+    def solver(problem: Problem) -> Iterator[Solver]:
+        def solve(requests: Floats, seed: int) -> list[Run]:
+            runs = []
+            for k, (start, goal) in enumerate(requests):
+                began = time.perf_counter()
+                result = plan(
+                    problem.space, start, goal, time_limit=TIME_LIMIT, seed=seed + k, **settings
+                )
+                runs.append(Run(time.perf_counter() - began, result.path))
+            return runs
+
+        yield solve
+
+    return solver
+
+
+def _optimized_for(seconds: float) -> SolverOf:
+    return _plan(algorithm='auto', optimize_for=seconds)
+
+
+@contextmanager
+def _optimized(problem: Problem) -> Iterator[Solver]:
+    """Use what is left of a wavefront's time after the first path to shorten it."""
+    with _plan(algorithm='auto')(problem) as plain, search_with(wavefront)(problem) as waves:
+        requests = np.resize(problem.requests, (CALIBRATION, 2, 2))
+        spent, allowed = (
+            median(run.seconds for run in solve(requests, 0)) for solve in (plain, waves)
+        )
+    left = USED * max(allowed, LEAST_TIME) - spent
+    with (_optimized_for(left) if left > 0.0 else _plan(algorithm='auto'))(problem) as solve:
+        yield solve

@@ -1,0 +1,19 @@
+"""String pulling: what is left of a path when vertices that are not needed go."""
+
+from hnr_planner.core.kernels import kernel
+from hnr_planner.core.spaces.primitives import sees
+import numpy as np
+
+
+@kernel
+def pull_string(grid, path):
+    """Keep of a path (m, 2) only vertices that do not see the one before their last."""
+    kept = np.empty_like(path)
+    kept[0] = path[0]
+    n_kept = 1
+    for k in range(2, len(path)):
+        if not sees(grid, kept[n_kept - 1], path[k]):
+            kept[n_kept] = path[k - 1]
+            n_kept += 1
+    kept[n_kept] = path[-1]
+    return kept[: n_kept + 1]

@@ -1,0 +1,26 @@
+"""Progress on the terminal: one line that is written over, in a log a line for each news."""
+
+from __future__ import annotations
+
+import sys
+import time
+
+#: In a log, news that come sooner than this after others [s] are left out.
+PATIENCE = 10.0
+_said_last = [0.0]
+
+
+def show(news: str) -> None:
+    """Say what is going on now."""
+    if sys.stderr.isatty():
+        print(f'\r\033[K{news}', end='', file=sys.stderr, flush=True)
+    elif time.monotonic() - _said_last[0] > PATIENCE:
+        _said_last[0] = time.monotonic()
+        print(news, file=sys.stderr, flush=True)
+
+
+def say(text: str) -> None:
+    """Say something that stays."""
+    clear = '\r\033[K' if sys.stderr.isatty() else ''
+    print(clear, end='', file=sys.stderr, flush=True)
+    print(text, flush=True)

@@ -1,0 +1,92 @@
+"""
+What a report is made of: sections, each a function of what was run.
+
+To add one, write a function that takes a ``Bench`` and returns a ``Section``, and list it in
+``SECTIONS`` of ``__main__``. Its verdicts go into the table at the top of the report.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+from benchmarks.problems import Problem
+from benchmarks.race import Standing
+import numpy as np
+
+
+@dataclass(frozen=True)
+class Bench:
+    """
+    What sections have to work with.
+
+    Attributes
+    ----------
+    quick : bool
+        Whether a look is all that is wanted.
+    problems : list of Problem
+        Maps and requests.
+    standings : list of Standing
+        The races on them, one each.
+    missing : list of str
+        What cannot take part on this machine, and why.
+
+    """
+
+    quick: bool
+    problems: list[Problem]
+    standings: list[Standing] = field(default_factory=list)
+    missing: list[str] = field(default_factory=list)
+
+
+class Verdict(NamedTuple):
+    """What is asked, what was measured, in words, and whether that is enough."""
+
+    what: str
+    to_reach: str
+    measured: str
+    met: bool
+
+
+class Section(NamedTuple):
+    """A part of the report: its heading, its body in Markdown, and what it says of the targets."""
+
+    title: str
+    body: str
+    verdicts: list[Verdict] = []  # noqa: RUF012
+
+
+SectionOf = Callable[[Bench], Section]
+
+
+def table(head: str, rows: Iterable[Iterable[str]]) -> str:
+    """Write a table in Markdown; the columns in ``head`` are divided by bars."""
+    names = head.split(' | ')
+    lines = [names, ['---'] + ['---:'] * (len(names) - 1), *rows]
+    return '\n'.join('| ' + ' | '.join(line) + ' |' for line in lines)
+
+
+def verdict_table(verdicts: list[Verdict]) -> str:
+    """Write what is asked, what was measured and the verdict."""
+    return table(
+        'what | to reach | measured | reached',
+        ([v.what, v.to_reach, v.measured, 'yes' if v.met else '**no**'] for v in verdicts),
+    )
+
+
+def milliseconds(seconds: float) -> str:
+    """Write a time with three digits; a dash for none."""
+    return f'{1e3 * seconds:.3g}' if np.isfinite(seconds) else '-'
+
+
+def ratio(value: float) -> str:
+    """Write a ratio; a dash for none."""
+    return f'{value:.3f}' if np.isfinite(value) else '-'
+
+
+def on_all(what: str, to_reach: str, falls_short: dict[str, str], n_problems: int) -> Verdict:
+    """Judge what is asked on every problem; ``falls_short`` says by how much on which."""
+    held = f'on {n_problems - len(falls_short)} of {n_problems} problems'
+    but = ', '.join(f'{name} {words}' for name, words in falls_short.items())
+    return Verdict(what, to_reach, f'{held}; not on: {but}' if but else held, not falls_short)

@@ -1,0 +1,34 @@
+"""Searches without a clock, for tests that look inside."""
+
+from typing import Any
+
+from hnr_planner.core import GridSpace
+from hnr_planner.core.planning.algorithms import make_planner
+from hnr_planner.core.planning.search import Problem
+from hnr_planner.core.streams import stream
+import numpy as np
+from numpy.typing import NDArray
+
+
+def start_search(
+    algorithm: str,
+    blocked: NDArray[np.bool_],
+    seed: int,
+    goal_radius: float = 0.0,
+    **settings: Any,
+):
+    """Start a search in cells, from the lower left to the upper right cell."""
+    space = GridSpace.from_blocked(blocked)
+    lower, upper = space.kernel_bounds
+    problem = Problem(
+        space.data,
+        lower,
+        upper,
+        lower + 0.5,
+        upper - 0.5,
+        goal_radius,
+        space.margin,
+        space.typical_clearance,
+        space.scale,
+    )
+    return make_planner(algorithm, settings).start(problem, stream(seed))
