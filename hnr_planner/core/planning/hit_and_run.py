@@ -34,6 +34,7 @@ class HitAndRunSearch:
     problem: Problem
     rng: np.random.Generator
     solved: bool = field(init=False, default=False)
+    taut: ClassVar[bool] = False
     redraws: int = field(init=False, default=0)
     _chain: Floats = field(init=False)
     _length: int = field(init=False, default=1)
