@@ -3,8 +3,8 @@ Many requests on one map: what a roadmap costs to build and mend, and what its a
 
 ``python -m benchmarks.roadmap [--quick]`` measures it alone. A request is the whole call of
 ``plan()`` from Python; lengths are ratios over the shortest path known, from long searches and
-from a roadmap of twice the draws. A map is mended after a block of a metre's side, or twenty cells
-where cells are large, has come up in a free place, and again when it has gone.
+from a roadmap of twice the draws. A map is mended after a block of twenty cells' side has come up
+in a free place, and again when it has gone.
 """
 
 from __future__ import annotations
@@ -84,8 +84,7 @@ def _with_block(space: GridSpace) -> GridSpace:
     k = np.random.default_rng(SEED).integers(len(rows))
     top, left = max(rows[k] - BLOCK // 2, 0), max(columns[k] - BLOCK // 2, 0)
     bottom, right = top + BLOCK, left + BLOCK
-    blocked = space.blocked
-    blocked = blocked.copy()
+    blocked = space.blocked.copy()
     blocked[top:bottom, left:right] = True
     return GridSpace.from_blocked(blocked, space.resolution, space.origin)
 

@@ -119,27 +119,25 @@ def nodes_seen(space, nodes, exits, x, leaves):
     is_new, near = np.ones(len(nodes), dtype=np.bool_), np.empty(NEIGHBOURS, dtype=np.int64)
     n = 0
     for i in range(_nearest_draws(exits, x, near)):
-        if n >= ENOUGH:
-            break
-        for k in range(exits.first_exit[near[i]], exits.first_exit[near[i] + 1]):
-            n += _look_at(space, x, nodes, exits.nodes[k], leaves, is_new, seen[n:], distance[n:])
+        if n < ENOUGH:
+            first, end = exits.first_exit[near[i]], exits.first_exit[near[i] + 1]
+            of_draw = exits.nodes[first:end]
+            n = _look_at(space, x, nodes, of_draw, leaves, is_new, seen, distance, n)
     if n == 0:
-        for node in range(len(nodes)):
-            n += _look_at(space, x, nodes, node, leaves, is_new, seen[n:], distance[n:])
+        n = _look_at(space, x, nodes, np.arange(len(nodes)), leaves, is_new, seen, distance, n)
     return seen[:n], distance[:n]
 
 
 @kernel
-def _look_at(space, x, nodes, node, leaves, is_new, seen, distance):
-    """Look at a node that is new and write it down when it is seen: 1 then, else 0."""
-    if not is_new[node]:
-        return 0
-    is_new[node] = False
-    a, b = (x, nodes[node]) if leaves else (nodes[node], x)
-    if not sees(space, a, b):
-        return 0
-    seen[0], distance[0] = node, norm(b - a)
-    return 1
+def _look_at(space, x, nodes, candidates, leaves, is_new, seen, distance, n):
+    """Write those of the candidates that are new and seen behind the first n; return how many."""
+    for node in candidates:
+        if is_new[node]:
+            is_new[node] = False
+            if sees(space, x, nodes[node]) if leaves else sees(space, nodes[node], x):
+                seen[n], distance[n] = node, norm(nodes[node] - x)
+                n += 1
+    return n
 
 
 @kernel
