@@ -6,11 +6,12 @@ The algorithms, free of ROS: spaces, walks on them, and planners.
 <PlannerStatus.SOLVED: 'a path was found'>
 """
 
-from hnr_planner.core.errors import HnrError, RequestError, SpaceError
+from hnr_planner.core.errors import Cancelled, HnrError, RequestError, SpaceError
 from hnr_planner.core.planning.algorithms import ALGORITHMS
 from hnr_planner.core.planning.hit_and_run import HitAndRun
 from hnr_planner.core.planning.plan import plan
 from hnr_planner.core.planning.result import FirstSolution, PlannerStatus, PlanResult
+from hnr_planner.core.planning.roadmap import Roadmap
 from hnr_planner.core.planning.rrt import RRT
 from hnr_planner.core.planning.simplify import simplify
 from hnr_planner.core.sampling.sample import sample, WALKS
@@ -21,6 +22,7 @@ __all__ = [
     'ALGORITHMS',
     'RRT',
     'WALKS',
+    'Cancelled',
     'Chord',
     'FirstSolution',
     'GridSpace',
@@ -29,6 +31,7 @@ __all__ = [
     'PlanResult',
     'PlannerStatus',
     'RequestError',
+    'Roadmap',
     'Space',
     'SpaceError',
     'plan',

@@ -11,3 +11,7 @@ class SpaceError(HnrError, ValueError):
 
 class RequestError(HnrError, ValueError):
     """An argument of a request is malformed: the message names the value and the rule."""
+
+
+class Cancelled(HnrError):
+    """Work that has no answer without its end was cancelled."""

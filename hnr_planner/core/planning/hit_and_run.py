@@ -36,6 +36,7 @@ class HitAndRunSearch:
     problem: Problem
     rng: Stream
     solved: bool = field(init=False, default=False)
+    taut: ClassVar[bool] = False
     redraws: int = field(init=False, default=0)
     _chain: Floats = field(init=False)
     _length: int = field(init=False, default=1)

@@ -199,7 +199,7 @@ def _attempt(request: Request, number: int, limits: Limits, began: float) -> _At
     if status is not PlannerStatus.SOLVED:
         return _Attempt(status, search, path, math.inf, None)
     first = FirstSolution(time.perf_counter() - began, path_length(path))
-    if not request.simplify or len(path) == 2:
+    if not request.simplify or search.taut or len(path) == 2:
         return _Attempt(status, search, path, first.length, first)
     path = shorten(request.space, path, request.stream(number, SHORTEN), limits)
     return _Attempt(status, search, path, path_length(path), first)

@@ -56,6 +56,7 @@ class RRTSearch:
     rng: Stream
     max_step: float
     solved: bool = field(init=False, default=False)
+    taut: ClassVar[bool] = False
     iterations: int = field(init=False, default=0)
     rejected: int = field(init=False, default=0)
     _n_vertices: int = field(init=False, default=1)

@@ -89,6 +89,10 @@ class Search(Protocol):
         """Path (m, dim) of a solved search: from the start into the region, or to the goal."""
 
     @property
+    def taut(self) -> bool:
+        """Whether the path of a solved search is as short as pulling could make it."""
+
+    @property
     def counts(self) -> dict[str, int]:
         """What else was counted, by name."""
 

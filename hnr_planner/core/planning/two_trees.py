@@ -7,6 +7,7 @@ when a vertex of one tree sees one of the other, or when the only tree has come 
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass, field
+from typing import ClassVar
 
 from hnr_planner.core.checks import Floats
 from hnr_planner.core.kernels import kernel
@@ -37,6 +38,7 @@ class TwoTreeSearch(ABC):
     problem: Problem
     rng: Stream
     iterations: int = field(init=False, default=0)
+    taut: ClassVar[bool] = False
     #: The vertices that see each other, the start tree's first; (k, NONE) for one in the region.
     _ends: tuple[int, int] = field(init=False, default=(NONE, NONE))
 
