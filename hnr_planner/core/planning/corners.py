@@ -7,6 +7,7 @@ are found by visibility alone, so in any space: in the plane they are the corner
 in more dimensions points on their edges.
 """
 
+from hnr_planner.core.borrowed import borrowed
 from hnr_planner.core.kernels import kernel
 from hnr_planner.core.planning.lengths import norm
 from hnr_planner.core.sampling.walks import hit_and_run_step
@@ -20,6 +21,7 @@ IN_A_BEND = 16
 @kernel
 def look_around(space, points, rng, looks):
     """Take Hit-and-Run steps from each of ``points`` (n, dim) into a row of ``looks``."""
+    space, points, rng, looks = borrowed(space), borrowed(points), borrowed(rng), borrowed(looks)
     for point in range(len(points)):
         for k in range(looks.shape[1]):
             hit_and_run_step(space, points[point], rng, looks[point, k])
@@ -33,6 +35,7 @@ def find_corners(space, points, looks, known, away):
     Pairs are left out that are the same in ``known``, which is as ``looks`` (n, k, dim) and holds
     NaN where nothing is. A corner is taken ``away`` from the obstacle.
     """
+    space, points, looks = borrowed(space), borrowed(points), borrowed(looks)
     corners = np.empty((len(points) * looks.shape[1] * IN_A_BEND, points.shape[1]))
     n = 0
     for point in range(len(points)):

@@ -9,6 +9,7 @@ two coordinates.
 import math
 from typing import NamedTuple
 
+from hnr_planner.core.borrowed import borrowed
 from hnr_planner.core.checks import Floats
 from hnr_planner.core.kernels import kernel
 from hnr_planner.core.planning.lengths import norm
@@ -89,6 +90,7 @@ def arrive(space, draws, edges, sources, distance, is_exit):
     Marks the nodes in ``is_exit`` (k, n) through which each draw is reached from one that does
     not see it.
     """
+    space, draws, edges = borrowed(space), borrowed(draws), borrowed(edges)
     from_source = np.empty(len(distance), dtype=np.float32)
     for source in sources:
         from_source[:] = math.inf

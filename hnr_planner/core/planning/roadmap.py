@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import math
 from typing import ClassVar
 
+from hnr_planner.core.borrowed import borrowed
 from hnr_planner.core.checks import check_seed, Floats
 from hnr_planner.core.errors import RequestError
 from hnr_planner.core.kernels import kernel
@@ -21,6 +22,7 @@ from hnr_planner.core.planning.roadmap_build import Knowledge, learn, N_DRAWS, n
 from hnr_planner.core.planning.search import NONE, Problem, Search
 from hnr_planner.core.spaces.primitives import sees
 from hnr_planner.core.spaces.space import Space
+from hnr_planner.core.streams import Stream, stream
 import numpy as np
 from numpy.typing import NDArray
 
@@ -111,7 +113,7 @@ class Roadmap:
         """Nodes (n, dim): corners of the space, in the caller's frame."""
         return self.space.from_kernel(self._known.nodes)
 
-    def start(self, problem: Problem, rng: np.random.Generator) -> Search:
+    def start(self, problem: Problem, rng: Stream) -> Search:
         """
         Answer a request, or start trees where the roadmap does not lead from start to goal.
 
@@ -172,7 +174,7 @@ class Answer:
 
 def _compile(space: Space) -> None:
     """Compile what requests on this kind of space may run, before one of them waits for it."""
-    (lower, upper), rng = space.kernel_bounds, np.random.default_rng(0)
+    (lower, upper), rng = space.kernel_bounds, stream(0)
     nothing = nothing_known(space)
     for_nodes = nothing.nodes, nothing.ways, nothing.exits
     shortest_path(space.data, *for_nodes, lower[np.newaxis], upper[np.newaxis])
@@ -206,6 +208,7 @@ def shortest_path(space, nodes, ways, exits, ahead, back):
 
     The ways (k, dim) lead from start and from goal to points that see a node.
     """
+    space, nodes, ways, exits = borrowed(space), borrowed(nodes), borrowed(ways), borrowed(exits)
     leaving, before = nodes_seen(space, nodes, exits, ahead[-1], True)
     arriving, after = nodes_seen(space, nodes, exits, back[-1], False)
     shortest, first, last = math.inf, NONE, NONE

@@ -9,6 +9,7 @@ has met no change, and there is nothing to learn from it.
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+from hnr_planner.core.borrowed import borrowed
 from hnr_planner.core.checks import Floats
 from hnr_planner.core.errors import Cancelled
 from hnr_planner.core.kernels import kernel
@@ -31,6 +32,7 @@ from hnr_planner.core.planning.sights import (
 from hnr_planner.core.sampling.walks import hit_and_run_step
 from hnr_planner.core.spaces.primitives import are_free, contains
 from hnr_planner.core.spaces.space import Space
+from hnr_planner.core.streams import stream
 import numpy as np
 from numpy.typing import NDArray
 
@@ -48,7 +50,7 @@ AWAY = 1e-3
 ROWS = 64
 #: Times that nodes are taken to the caller's frame and back until they stay the same.
 ROUNDS = 8
-#: What generators are for: points to walk from, the walks, the looks.
+#: What random streams are for: points to walk from, the walks, the looks.
 ROOTS, PLACE, LOOK = 0, 1, 2
 
 
@@ -134,11 +136,6 @@ def learn(
     )
 
 
-def _rng(seed: int, *purpose: int) -> np.random.Generator:
-    sequence = np.random.SeedSequence(seed, spawn_key=purpose)
-    return np.random.Generator(np.random.PCG64(sequence))
-
-
 def _in_parts(n_rows: int, cancel: Event | None) -> Iterator[slice]:
     """Yield slices of so many rows, and look at the cancellation before each."""
     for first in range(0, n_rows, ROWS):
@@ -161,7 +158,7 @@ def _place_draws(
     """
     roots = np.empty((n_draws, space.dim))
     n_roots = _free_points(
-        space.data, *space.kernel_bounds, _rng(seed, ROOTS, before.age), PROPOSALS, roots
+        space.data, *space.kernel_bounds, stream(seed, ROOTS, before.age), PROPOSALS, roots
     )
     n_filled = n_draws if n_roots > 0 else 0
     draws, stays = (
@@ -169,7 +166,7 @@ def _place_draws(
         np.zeros(n_filled, dtype=bool),
     )
     for part in _in_parts(n_filled, cancel):
-        _walk(space.data, _rng(seed, PLACE, before.age, part.start), STEPS, draws[part])
+        _walk(space.data, stream(seed, PLACE, before.age, part.start), STEPS, draws[part])
     old = before.draws[:n_filled]
     stays[: len(old)] = space is before.space or (
         are_free(space.data, old) & are_free(before.space.data, draws[: len(old)])
@@ -194,6 +191,7 @@ def _free_points(space, lower, upper, rng, proposals, points):
 @kernel
 def _walk(space, rng, steps, points):
     """Move each of ``points`` (k, dim) by Hit-and-Run steps."""
+    space, rng, points = borrowed(space), borrowed(rng), borrowed(points)
     y = np.empty(points.shape[1])
     for k in range(len(points)):
         for _ in range(steps):
@@ -216,7 +214,7 @@ def _look_for_corners(
     away = AWAY * space.typical_clearance
     found = [np.empty((0, space.dim))]
     for part in _in_parts(len(draws), cancel):
-        look_around(space.data, draws[part], _rng(seed, LOOK, part.start), looks[part])
+        look_around(space.data, draws[part], stream(seed, LOOK, part.start), looks[part])
         found.append(find_corners(space.data, draws[part], looks[part], known[part], away))
         if before.age > 0 and space is not before.space:
             find_opening(before.space.data, draws[part], looks[part], known[part], *opening)

@@ -10,6 +10,7 @@ import heapq
 import math
 from typing import NamedTuple
 
+from hnr_planner.core.borrowed import borrowed
 from hnr_planner.core.checks import Floats
 from hnr_planner.core.kernels import kernel
 from hnr_planner.core.planning.search import NONE
@@ -30,6 +31,7 @@ def look(space, points, others, sights):
 
     A sight has to be free from either end, so that a way may be walked both ways.
     """
+    space, points, others = borrowed(space), borrowed(points), borrowed(others)
     for i in range(len(points)):
         for j in range(len(others)):
             if sights[i, j] == ASK:
@@ -123,6 +125,7 @@ def mend(ways, rows, edges, sights, new, new_length):
     Dijkstra's algorithm (1959), which begins where known ways meet nodes that have lost theirs,
     and where one of the ``new`` edges (k, 2), of ``new_length`` (k,), makes a way shorter.
     """
+    ways, edges, sights = borrowed(ways), borrowed(edges), borrowed(sights)
     n_nodes = len(sights)
     sound, waits = np.empty(n_nodes, dtype=np.int8), np.empty(n_nodes, dtype=np.bool_)
     trail = np.empty(n_nodes, dtype=np.int64)
