@@ -31,6 +31,7 @@ from hnr_planner.core.planning.request import Request
 from hnr_planner.core.planning.result import PlannerStatus, PlanResult
 from hnr_planner.core.planning.rrt import draw_in_box
 from hnr_planner.core.planning.simplify import shorten, skip_vertices
+from hnr_planner.core.planning.stand_off import stand_off
 from hnr_planner.core.spaces.primitives import component
 from hnr_planner.core.spaces.space import Space
 import numpy as np
@@ -105,6 +106,8 @@ def _find(
             continue
         rng = request.generator(number, EXPLORE, 0)
         taut = shorten(space, rough, rng, limits, islands=islands)
+        if request.clearance > 0.0:
+            taut = stand_off(space, taut, request.clearance, limits, islands)
         points = space.to_kernel(taut)
         if is_simple(points):
             among = signature(islands, points)

@@ -27,6 +27,7 @@ from hnr_planner.core.planning.result import (
 )
 from hnr_planner.core.planning.search import Planner, Search
 from hnr_planner.core.planning.simplify import compile_shorten, shorten
+from hnr_planner.core.planning.stand_off import compile_stand_off, path_cost, stand_off
 from hnr_planner.core.spaces.space import Space
 import numpy as np
 from numpy.typing import ArrayLike
@@ -112,7 +113,7 @@ def plan(
     limits = Limits(began + seconds, transitions, cancel)
     known = without_search(request)
     if known is not None:
-        answer = _answer_without_search(request, *known, began)
+        answer = _answer_without_search(request, *known, limits, began)
     else:
         answer = _answer_by_search(request, limits, improve_seconds, improve_searches, began)
     if n_paths > 1 and answer.status is PlannerStatus.SOLVED:
@@ -138,7 +139,7 @@ def _answer_by_search(
         message=_message(best, iterations, began),
         planner=request.planner.name,
         path=best.path,
-        length=best.length,
+        length=path_length(best.path) if len(best.path) else math.inf,
         samples=samples,
         parents=best.search.parents.copy(),
         iterations=iterations,
@@ -151,15 +152,16 @@ def _answer_by_search(
 
 
 def _answer_without_search(
-    request: Request, status: PlannerStatus, message: str, began: float
+    request: Request, status: PlannerStatus, message: str, limits: Limits, began: float
 ) -> PlanResult:
     """Answer a request that needs no search to fail or to succeed."""
     path, length, samples, first = np.empty((0, len(request.start))), math.inf, 0, None
     if status is PlannerStatus.SOLVED:
         end = request.goal if request.goal_radius == 0.0 else request.start
         path, samples = np.stack([request.start, end]), 1
+        first = FirstSolution(time.perf_counter() - began, path_length(path))
+        path = _with_clearance(request, path, limits)
         length = path_length(path)
-        first = FirstSolution(time.perf_counter() - began, length)
     return PlanResult(
         status=status,
         message=message,
@@ -172,7 +174,7 @@ def _answer_without_search(
         counts={},
         elapsed=time.perf_counter() - began,
         seed=request.seed,
-        cut_by_time=False,
+        cut_by_time=limits.cut,
         first_solution=first,
     )
 
@@ -187,7 +189,7 @@ class _Attempt(NamedTuple):
     status: PlannerStatus
     search: Search
     path: Floats
-    length: float
+    cost: float
     first: FirstSolution | None
 
 
@@ -197,10 +199,17 @@ def _attempt(request: Request, number: int, limits: Limits, began: float) -> _At
     if status is not PlannerStatus.SOLVED:
         return _Attempt(status, search, path, math.inf, None)
     first = FirstSolution(time.perf_counter() - began, path_length(path))
-    if not request.simplify or len(path) == 2:
-        return _Attempt(status, search, path, first.length, first)
-    path = shorten(request.space, path, request.generator(number, SHORTEN), limits)
-    return _Attempt(status, search, path, path_length(path), first)
+    if request.simplify and len(path) > 2:
+        path = shorten(request.space, path, request.generator(number, SHORTEN), limits)
+    path = _with_clearance(request, path, limits)
+    return _Attempt(status, search, path, path_cost(request.space, path, request.clearance), first)
+
+
+def _with_clearance(request: Request, path: Floats, limits: Limits) -> Floats:
+    """Move a path away from walls where that is asked for."""
+    if request.clearance == 0.0:
+        return path
+    return stand_off(request.space, path, request.clearance, limits)
 
 
 def _search(request: Request, number: int, limits: Limits) -> tuple[PlannerStatus, Search, Floats]:
@@ -236,13 +245,13 @@ def _path_found(request: Request, search: Search) -> Floats:
 def _improve(
     request: Request, best: _Attempt, searches: float, limits: Limits, began: float
 ) -> tuple[_Attempt, int]:
-    """Search again from fresh seeds: the attempt with the shortest path, and all transitions."""
+    """Search again from fresh seeds: the attempt with the best path, and all transitions."""
     iterations, number = best.search.iterations, 1
     while number <= searches and len(best.path) > 2 and limits.stop() is None:
         again = _attempt(request, number, limits, began)
         iterations += again.search.iterations
         number += 1
-        if again.length < best.length:
+        if again.cost < best.cost:
             best = again
     return best, iterations
 
@@ -250,19 +259,19 @@ def _improve(
 def _message(attempt: _Attempt, iterations: int, began: float) -> str:
     """Say in words how a search ended."""
     if attempt.status is PlannerStatus.SOLVED:
-        found = f'path of {attempt.length:.6g} m with {len(attempt.path)} vertices'
+        found = f'path of {path_length(attempt.path):.6g} m with {len(attempt.path)} vertices'
         return f'{found} after {iterations} transitions'
     seconds = time.perf_counter() - began
     return f'{attempt.status.value} ({iterations} transitions, {seconds:.3g} s)'
 
 
-_compiled: set[tuple[type, type[Planner], bool]] = set()
+_compiled: set[tuple[type, type[Planner], bool, bool]] = set()
 
 
 def _compile(request: Request, n_paths: int) -> None:
     """Compile, once for each kind of space and planner, before any clock runs."""
     space = request.space
-    kinds = type(space.data), type(request.planner), n_paths > 1
+    kinds = type(space.data), type(request.planner), n_paths > 1, request.clearance > 0.0
     if kinds in _compiled:
         return
     search = request.planner.start(request.problem, np.random.default_rng(0))
@@ -273,4 +282,6 @@ def _compile(request: Request, n_paths: int) -> None:
     space.first_blocked_segment(ends)
     if n_paths > 1:
         compile_alternatives(request)
+    if request.clearance > 0.0:
+        compile_stand_off(space, ends, request.clearance)
     _compiled.add(kinds)
