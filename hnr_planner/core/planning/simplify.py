@@ -10,7 +10,7 @@ import time
 
 from hnr_planner.core.checks import check_count, check_number, check_points, check_seed, Floats
 from hnr_planner.core.errors import RequestError
-from hnr_planner.core.planning.homology import Islands, NO_ISLANDS
+from hnr_planner.core.planning.homology import Islands
 from hnr_planner.core.planning.lengths import path_length
 from hnr_planner.core.planning.limits import Limits
 from hnr_planner.core.planning.shortcuts import skip, tighten
@@ -93,7 +93,7 @@ def shorten(
     rng: np.random.Generator,
     limits: Limits,
     tests_max: int = TESTS_MAX,
-    islands: Islands = NO_ISLANDS,
+    islands: Islands | None = None,
 ) -> Floats:
     """
     Shorten a free path (m, dim) of the caller's frame within limits; the same ends.
@@ -120,7 +120,7 @@ def skip_vertices(
     points: Floats,
     limits: Limits,
     tests_max: int = TESTS_MAX,
-    islands: Islands = NO_ISLANDS,
+    islands: Islands | None = None,
 ) -> tuple[Floats, int]:
     """Keep only vertices that follow each other as the last one seen: (path, tests)."""
     tests = 0
@@ -139,8 +139,8 @@ def skip_vertices(
     return points, tests
 
 
-def compile_shorten(space: Space, points: Floats) -> None:
+def compile_shorten(space: Space, points: Floats, islands: Islands | None = None) -> None:
     """Compile what ``shorten`` runs on this kind of space, without doing anything."""
-    skip(space.data, NO_ISLANDS, points, np.zeros(1, dtype=np.int64), 1, 1, 0)
-    tighten(space.data, NO_ISLANDS, points[:1], space.margin, np.random.default_rng(0), 0)
+    skip(space.data, islands, points, np.zeros(1, dtype=np.int64), 1, 1, 0)
+    tighten(space.data, islands, points[:1], space.margin, np.random.default_rng(0), 0)
     path_length(points)

@@ -16,7 +16,6 @@ from hnr_planner.core.planning.homology import (
     crossings,
     Islands,
     loop_signature,
-    NO_ISLANDS,
 )
 from hnr_planner.core.planning.lengths import distance, path_length
 from hnr_planner.core.planning.limits import Limits
@@ -69,7 +68,7 @@ def wish_for(space: Space, clearance: float) -> Wish:
 
 
 def stand_off(
-    space: Space, path: Floats, clearance: float, limits: Limits, islands: Islands = NO_ISLANDS
+    space: Space, path: Floats, clearance: float, limits: Limits, islands: Islands | None = None
 ) -> Floats:
     """
     Move a free path (m, dim) of the caller's frame away from walls, within limits; the same ends.
@@ -90,7 +89,9 @@ def stand_off(
     return moved if is_better and space.first_blocked_segment(moved) is None else path
 
 
-def _move_all(space: Space, islands: Islands, wish: Wish, points: Floats, limits: Limits) -> None:
+def _move_all(
+    space: Space, islands: Islands | None, wish: Wish, points: Floats, limits: Limits
+) -> None:
     """Move the vertices, in passes, until no step is left that is worth it."""
     steps, costs = np.full(len(points), wish.coarsest), segment_costs(wish, points)
     for _ in range(PASSES):
@@ -228,10 +229,12 @@ def drop(space, islands, wish, points):
     return kept[:n_kept]
 
 
-def compile_stand_off(space: Space, ends: Floats, clearance: float) -> None:
+def compile_stand_off(
+    space: Space, ends: Floats, clearance: float, islands: Islands | None = None
+) -> None:
     """Compile what ``stand_off`` runs on this kind of space."""
     wish = wish_for(space, clearance)
     points = spread(wish, ends)
     costs = segment_costs(wish, points)
-    move(space.data, NO_ISLANDS, wish, points, costs, np.zeros(len(points)))
-    drop(space.data, NO_ISLANDS, wish, points)
+    move(space.data, islands, wish, points, costs, np.zeros(len(points)))
+    drop(space.data, islands, wish, points)

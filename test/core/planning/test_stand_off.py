@@ -1,12 +1,14 @@
 """Clearance: kept where there is room, given up in doors, never at the price of a collision."""
 
+from functools import partial
 from itertools import pairwise
 import math
 from test.brute_force import path_collisions
 from test.laws import maps
 import threading
 
-from hnr_planner.core import ALGORITHMS, GridSpace, plan, PlannerStatus, RequestError
+from hnr_planner import core
+from hnr_planner.core import ALGORITHMS, GridSpace, PlannerStatus, RequestError
 from hnr_planner.core.planning import stand_off as module
 from hnr_planner.core.planning.hit_and_run_connect import HitAndRunConnect
 from hnr_planner.core.planning.homology import islands_at, signature
@@ -18,6 +20,9 @@ from numpy.typing import NDArray
 import pytest
 
 Floats = NDArray[np.float64]
+# No law here is about time, however busy the machine is.
+plan = partial(core.plan, time_limit=60.0)
+
 BLOCKED = maps.rooms(60, 80, 20, seed=4)
 ORIGIN = (2.0, -1.0, 0.4)
 SPACE = GridSpace.from_blocked(BLOCKED, 0.1, ORIGIN)
@@ -104,7 +109,7 @@ def test_a_narrow_door_is_passed_in_its_middle_and_left_behind(width: int, seed:
 
 @pytest.mark.parametrize('clearance', [1e-9, 0.01, 3.0, 1e6])
 def test_any_clearance_can_be_asked_for(clearance: float):
-    result = plan(SPACE, START, GOAL, clearance=clearance, seed=1, time_limit=30.0)
+    result = plan(SPACE, START, GOAL, clearance=clearance, seed=1)
     assert result.status is PlannerStatus.SOLVED and not result.cut_by_time
     assert path_collisions(result.path, BLOCKED, 0.1, ORIGIN) == []
 
@@ -126,8 +131,8 @@ def test_on_any_map_the_path_is_free_and_costs_no_more_than_the_shortest(
     space = GridSpace.from_blocked(occupied, 0.1, ORIGIN, robot_radius=radius)
     free = np.argwhere(space.largest_component())
     start, goal = space.cell_centres(*free[[0, -1]].T)
-    shortest = plan(space, start, goal, seed=seed, time_limit=30.0)
-    result = plan(space, start, goal, seed=seed, clearance=clearance, time_limit=30.0)
+    shortest = plan(space, start, goal, seed=seed)
+    result = plan(space, start, goal, seed=seed, clearance=clearance)
     assert path_collisions(result.path, space.blocked, 0.1, ORIGIN) == []
     np.testing.assert_array_equal(result.path[[0, -1]], [start, goal])
     costs = [path_cost(space, answer.path, clearance) for answer in (result, shortest)]
