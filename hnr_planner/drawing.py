@@ -40,6 +40,7 @@ KINDS = (
 )
 """What a cell can be, and its colour."""
 PATH = '#D55E00'
+OTHER_PATH = '#E69F00'
 START = '#009E73'
 GOAL = '#CC79A7'
 AGES = LinearSegmentedColormap.from_list('ages', ('#A9D8F5', '#56B4E9', '#0072B2', '#1B2A5C'))
@@ -55,6 +56,7 @@ class Plan(NamedTuple):
     parents: NDArray[np.int64]
     start: tuple[float, float]
     goal: tuple[float, float]
+    others: Sequence[NDArray[np.float64]] = ()
 
 
 def draw_map(
@@ -156,13 +158,13 @@ def draw_samples(axes: Axes, samples: ArrayLike) -> None:
     )
 
 
-def draw_path(axes: Axes, path: ArrayLike) -> None:
+def draw_path(axes: Axes, path: ArrayLike, *, colour: str = PATH) -> None:
     """Draw the path, an (m, 2) array of points [m], bold and set off from what lies below."""
     points = np.asarray(path, dtype=float).reshape(-1, 2)
     axes.plot(
         points[:, 0],
         points[:, 1],
-        color=PATH,
+        color=colour,
         linewidth=2.4,
         solid_capstyle='round',
         solid_joinstyle='round',
@@ -217,6 +219,8 @@ def figure_of_plans(
         draw_map(axes, occupancy, blocked=blocked, occupied_threshold=occupied_threshold)
         draw_tree(axes, plan.samples, plan.parents)
         draw_samples(axes, plan.samples)
+        for path in plan.others[::-1]:
+            draw_path(axes, path, colour=OTHER_PATH)
         if len(plan.path):
             draw_path(axes, plan.path)
         draw_ends(axes, plan.start, plan.goal)
@@ -224,7 +228,7 @@ def figure_of_plans(
     for axes in panels[1:]:
         axes.set_ylabel('')
     kinds = np.unique(_kinds(occupancy, blocked, occupied_threshold))
-    _legend(figure, panels, kinds, ends=True)
+    _legend(figure, panels, kinds, ends=True, others=any(plan.others for plan in plans))
     return figure
 
 
@@ -312,7 +316,14 @@ def _panels(occupancy: OccupancyMap, count: int) -> tuple[Figure, list[Axes]]:
     return figure, list(figure.subplots(1, count, squeeze=False)[0])
 
 
-def _legend(figure: Figure, panels: list[Axes], kinds: NDArray[np.int8], *, ends: bool) -> None:
+def _legend(
+    figure: Figure,
+    panels: list[Axes],
+    kinds: NDArray[np.int8],
+    *,
+    ends: bool,
+    others: bool = False,
+) -> None:
     """Add one legend of what is there for all panels, and the scale of the samples' colours."""
     handles: list[Patch | Line2D] = [
         Patch(facecolor=colour, edgecolor='#B4BAC1', linewidth=0.5, label=label)
@@ -321,6 +332,7 @@ def _legend(figure: Figure, panels: list[Axes], kinds: NDArray[np.int8], *, ends
     if ends:
         handles += [
             Line2D([], [], color=PATH, linewidth=2.4, label='path'),
+            *[Line2D([], [], color=OTHER_PATH, linewidth=2.4, label='other paths')] * others,
             _mark(START, 'o', 9, 'start'),
             _mark(GOAL, '*', 14, 'goal'),
         ]

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from hnr_planner.cli.arguments import (
     add_map_arguments,
     compile_kernels,
+    count,
     duration,
     keep_map_files,
     length,
@@ -89,6 +90,22 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
         'the time limit; default 0',
     )
     parser.add_argument(
+        '--clearance',
+        type=length,
+        default=0.0,
+        metavar='R',
+        help='keep this far from obstacles where there is room [m], and pass narrow places in '
+        'their middle; default 0, the shortest path',
+    )
+    parser.add_argument(
+        '--alternatives',
+        type=count,
+        default=1,
+        metavar='K',
+        help='look for up to this many paths that pass obstacles on different sides, the '
+        'shortest first; default 1',
+    )
+    parser.add_argument(
         '--seed', type=whole, metavar='N', help='seed of the random numbers; default a fresh one'
     )
     parser.add_argument(
@@ -121,6 +138,8 @@ def run(arguments: argparse.Namespace) -> int:
         seed=arguments.seed,
         simplify=arguments.simplify,
         optimize_for=arguments.optimize_for,
+        alternatives=arguments.alternatives,
+        **({'clearance': arguments.clearance} if arguments.clearance else {}),
     )
     print(_json(result) if arguments.json else _summary(space, result))
     if arguments.plot:
@@ -142,6 +161,7 @@ def _json(result: PlanResult) -> str:
             'elapsed': result.elapsed,
             'length': result.length if math.isfinite(result.length) else None,
             'path': result.path.tolist(),
+            'paths': [path.tolist() for path in result.paths],
         }
     )
 
@@ -153,13 +173,13 @@ def _summary(space: GridSpace, result: PlanResult) -> str:
         f'search      {result.planner}, {result.iterations:,} transitions, '
         f'{len(result.samples):,} samples, {result.elapsed * 1e3:.1f} ms, seed {result.seed}',
     ]
-    if len(result.path):
-        clearance = space.path_clearance(result.path)
+    for path in result.paths:
+        length = sum(map(math.dist, path[:-1], path[1:]))
         lines.append(
-            f'path        {result.length:.2f} m, {len(result.path)} points, '
-            f'{clearance:.2f} m from the nearest obstacle'
+            f'path        {length:.2f} m, {len(path)} points, '
+            f'{space.path_clearance(path):.2f} m from the nearest obstacle'
         )
-        lines.append('            ' + ' '.join(_points(result.path.tolist())))
+        lines.append('            ' + ' '.join(_points(path.tolist())))
     return '\n'.join(lines)
 
 
@@ -188,6 +208,7 @@ def _draw(
         result.parents,
         tuple(arguments.start),
         tuple(arguments.goal),
+        result.others,
     )
     figure = drawing.figure_of_plans(occupancy, [shown], blocked=space.blocked)
     drawing.save(figure, arguments.plot)

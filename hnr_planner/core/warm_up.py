@@ -13,7 +13,7 @@ def warm_up() -> None:
     start, goal = (0.5, 0.5), (2.5, 2.5)
     for algorithm in ALGORITHMS:
         plan(space, start, goal, algorithm=algorithm, seed=0, optimize_iterations=1)
-    plan(space, start, goal, seed=0, alternatives=2)
+    plan(space, start, goal, seed=0, alternatives=2, clearance=1.0)
     sample(space, start, 1, seed=0)
     space.nearest_reachable(start, goal, 1.0)
     space.chord(start, (1.0, 0.0))

@@ -12,13 +12,23 @@ from test.cli.pictures import check_picture
 
 from hnr_planner.cli.plan import ALGORITHM_NAMES
 from hnr_planner.cli.sample import WALK_NAMES
-from hnr_planner.core import ALGORITHMS, WALKS
+from hnr_planner.core import ALGORITHMS, GridSpace, WALKS
 from hnr_planner.maps import load_map, OccupancyMap, save_map
 import numpy as np
 import pytest
 
 Run = Callable[..., Ran]
-KEYS = ['status', 'message', 'algorithm', 'seed', 'iterations', 'elapsed', 'length', 'path']
+KEYS = [
+    'status',
+    'message',
+    'algorithm',
+    'seed',
+    'iterations',
+    'elapsed',
+    'length',
+    'path',
+    'paths',
+]
 
 
 def ends(rooms: OccupancyMap) -> list[object]:
@@ -185,6 +195,35 @@ def test_time_limit_ends_a_longer_search_for_shorter_paths(
     result = json.loads(run(*command, '--json').out)
     assert result['status'] == 'SOLVED'
     assert 0.3 <= result['elapsed'] < 30
+
+
+def test_alternatives_are_further_paths_the_shortest_first(
+    run: Run, rooms: OccupancyMap, rooms_file: Path, tmp_path: Path
+) -> None:
+    command = ['plan', OFFICE, '--start', 3, 22, '--goal', 34, 5, '--seed', 1]
+    command += ['--alternatives', 3, '--time-limit', 20]
+    result = json.loads(run(*command, '--json').out)
+    assert result['paths'][0] == result['path']
+    lengths = [sum(map(math.dist, path[:-1], path[1:])) for path in result['paths']]
+    assert len(lengths) == 3 and lengths == sorted(lengths)
+    told = run(*command, '--plot', tmp_path / 'plan.png')
+    assert all(f'{length:.2f} m' in told.out for length in lengths)
+    check_picture(tmp_path / 'plan.png')
+    one = json.loads(run('plan', rooms_file, *ends(rooms), '--json').out)
+    assert one['paths'] == [one['path']]
+
+
+def test_clearance_keeps_the_path_away_from_walls(
+    run: Run, rooms: OccupancyMap, rooms_file: Path
+) -> None:
+    command = ['plan', rooms_file, *ends(rooms), '--seed', 1, '--json']
+    shortest, wider = (json.loads(run(*command, *more).out) for more in ([], ['--clearance', 0.2]))
+    space = GridSpace.from_occupancy(rooms.data, rooms.resolution, rooms.origin)
+    nearest, less_near = (space.path_clearance(each['path']) for each in (shortest, wider))
+    assert nearest < 0.05 < 0.1 < less_near
+    refused = run(*command, '--algorithm', 'rrt', '--clearance', 0.2)
+    assert refused.code == 2
+    assert "no setting 'clearance'" in refused.err
 
 
 def test_unknown_cells_block_unless_told_otherwise(run: Run, tmp_path: Path) -> None:

@@ -9,10 +9,10 @@ from test.laws import maps
 
 from hnr_planner.core import GridSpace, kernels
 from hnr_planner.core.kernels import interpreted
+from hnr_planner.core.planning import class_graph, nearest, rrt, shortcuts, stand_off
 from hnr_planner.core.planning import hit_and_run_connect as connect
-from hnr_planner.core.planning import nearest, rrt, shortcuts
 from hnr_planner.core.planning.hit_and_run import _walk
-from hnr_planner.core.planning.homology import islands_at, NO_ISLANDS
+from hnr_planner.core.planning.homology import islands_at
 from hnr_planner.core.planning.search import Problem
 from hnr_planner.core.sampling.sample import run_chain
 from hnr_planner.core.spaces.primitives import chord
@@ -167,10 +167,40 @@ def test_hit_and_run_connect():
 
 
 @pytest.mark.filterwarnings('ignore:overflow')  # signatures are sums modulo 2^64
-@pytest.mark.parametrize('islands', [NO_ISLANDS, islands_at(GRID.island_points)])
+@pytest.mark.parametrize('islands', [None, islands_at(GRID.island_points)])
 def test_simplify(islands):
-    chain = np.tile(PROBLEM.start, (60, 1))
-    _walk(PROBLEM._replace(goal_radius=1e-9), stream(1), chain, 1, 60)
+    chain = zigzag()
     kept = np.zeros(60, dtype=np.int64)
     assert_same(*both(shortcuts.skip, GRID.data, islands, chain, kept, 1, True, 100))
     assert_same(*both(shortcuts.tighten, GRID.data, islands, chain, 1e-8, stream(5), 1000))
+
+
+def zigzag() -> np.ndarray:
+    """Points of the space, each of which sees the next."""
+    chain = np.tile(PROBLEM.start, (60, 1))
+    _walk(PROBLEM._replace(goal_radius=1e-9), stream(1), chain, 1, 60)
+    return chain
+
+
+@pytest.mark.filterwarnings('ignore:overflow')
+def test_alternatives():
+    points, islands = zigzag(), islands_at(GRID.island_points)
+    edges = both(class_graph.near_edges, GRID.data, points, np.arange(60), 8)
+    assert_same(*edges)
+    graph = class_graph.class_graph(points, edges[0][0])
+    assert_same(*both(class_graph._search, graph, islands, 4))
+    assert_same(*both(class_graph.is_simple, points))
+
+
+@pytest.mark.filterwarnings('ignore:overflow')
+def test_stand_off():
+    wish = stand_off.wish_for(GRID, 0.2)
+    islands = islands_at(GRID.island_points)
+    spread = both(stand_off.spread, wish, zigzag()[:20])
+    assert_same(*spread)
+    points = spread[0][0]
+    costs, steps = stand_off.segment_costs(wish, points), np.full(len(points), 2.0)
+    moved = both(stand_off.move, GRID.data, islands, wish, points, costs, steps)
+    assert_same(*moved)
+    assert (moved[0][1][3] != points).any()
+    assert_same(*both(stand_off.drop, GRID.data, islands, wish, points))

@@ -24,13 +24,14 @@ from hnr_planner.core.planning.class_graph import (
     START,
 )
 from hnr_planner.core.planning.hit_and_run_connect import HitAndRunConnect
-from hnr_planner.core.planning.homology import islands_at, NO_ISLANDS, signature
+from hnr_planner.core.planning.homology import islands_at, signature
 from hnr_planner.core.planning.lengths import path_length
 from hnr_planner.core.planning.limits import Limits
 from hnr_planner.core.planning.request import Request
 from hnr_planner.core.planning.result import PlannerStatus, PlanResult
 from hnr_planner.core.planning.rrt import draw_in_box
-from hnr_planner.core.planning.simplify import shorten, skip_vertices
+from hnr_planner.core.planning.simplify import compile_shorten, shorten, skip_vertices
+from hnr_planner.core.planning.stand_off import compile_stand_off, stand_off
 from hnr_planner.core.spaces.primitives import component
 from hnr_planner.core.spaces.space import Space
 import numpy as np
@@ -92,9 +93,9 @@ def _find(
     is known by then. Returns the paths, the shortest first, and transitions handled.
     """
     space = request.space
-    if space.island_points is None or np.array_equal(path[0], path[-1]):
+    if np.array_equal(path[0], path[-1]):
         return [path], 0
-    islands = islands_at(space.island_points)
+    islands = islands_at(np.asarray(space.island_points))
     graph, iterations = _explore(request, path, limits)
     shortest = {signature(islands, space.to_kernel(path)): path}
     found = shortest_classes(graph, islands, SOUGHT * n_paths) if limits.stop() is None else []
@@ -105,6 +106,8 @@ def _find(
             continue
         rng = request.stream(number, EXPLORE, 0)
         taut = shorten(space, rough, rng, limits, islands=islands)
+        if request.clearance > 0.0:
+            taut = stand_off(space, taut, request.clearance, limits, islands)
         points = space.to_kernel(taut)
         if is_simple(points):
             among = signature(islands, points)
@@ -165,11 +168,15 @@ def _draw_points(problem, rng, points):
 
 
 def compile_alternatives(request: Request) -> None:
-    """Compile what ``find_alternatives`` runs on this kind of space, but for searches."""
+    """Compile what ``with_alternatives`` runs on this kind of space."""
+    space, islands = request.space, islands_at(np.empty((0, 2)))
     ends = np.stack([request.problem.start, request.problem.start])
     graph = _linked(request, [ends], ends[:0], Limits(math.inf))
-    shortest_classes(graph, NO_ISLANDS, 1)
-    signature(NO_ISLANDS, ends)
+    shortest_classes(graph, islands, 1)
+    compile_shorten(space, ends, islands)
+    if request.clearance > 0.0:
+        compile_stand_off(space, ends, request.clearance, islands)
+    signature(islands, ends)
     is_simple(ends)
     _draw_points(request.problem, request.stream(0), ends[:0])
     HitAndRunConnect().start(request.problem, request.stream(0)).advance(0)

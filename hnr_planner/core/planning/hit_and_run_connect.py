@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from typing import ClassVar, NamedTuple
 
 from hnr_planner.core.borrowed import borrowed
-from hnr_planner.core.checks import Floats
+from hnr_planner.core.checks import check_number, Floats
 from hnr_planner.core.kernels import kernel
 from hnr_planner.core.planning.frontier import (
     add_to_bin,
@@ -67,9 +67,23 @@ class Trees(NamedTuple):
 
 @dataclass(frozen=True)
 class HitAndRunConnect:
-    """Trees of Hit-and-Run steps from both ends. It has no settings."""
+    """
+    Trees of Hit-and-Run steps from both ends.
+
+    Attributes
+    ----------
+    clearance : float
+        Distance to obstacles [m] that the path keeps where there is room; narrower places are
+        passed in their middle. 0 for the shortest path.
+
+    """
+
+    clearance: float = 0.0
 
     name: ClassVar[str] = 'hit_and_run_connect'
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, 'clearance', check_number('clearance', self.clearance, 0.0, 1e6))
 
     def start(self, problem: Problem, rng: Stream) -> 'HitAndRunConnectSearch':
         """Start a tree at each end."""

@@ -15,9 +15,18 @@ def norm(u):
 
 
 @kernel
+def distance(a, b):
+    """Distance between two points (dim,)."""
+    squared = 0.0
+    for i in range(len(a)):
+        squared += (b[i] - a[i]) ** 2
+    return math.sqrt(squared)
+
+
+@kernel
 def path_length(path):
     """Length of a path (m, dim)."""
     total = 0.0
     for k in range(1, len(path)):
-        total += norm(path[k] - path[k - 1])
+        total += distance(path[k - 1], path[k])
     return total

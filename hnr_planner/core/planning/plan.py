@@ -2,21 +2,21 @@
 ``plan``: one request, one answer.
 
 The planners search and count; ``plan`` alone checks the request, owns the clock, listens for a
-cancellation, shortens the path and says in words how it ended.
+cancellation and says in words how it ended.
 """
 
 from dataclasses import replace
-import itertools
 import math
 import time
-from typing import Any, NamedTuple
+from typing import Any
 
-from hnr_planner.core.checks import check_count, check_number, Floats
+from hnr_planner.core.checks import check_count, check_number
 from hnr_planner.core.planning.alternatives import (
     check_alternatives,
     compile_alternatives,
     with_alternatives,
 )
+from hnr_planner.core.planning.attempts import Attempt, attempt, improve, with_clearance
 from hnr_planner.core.planning.lengths import path_length
 from hnr_planner.core.planning.limits import Event, Limits
 from hnr_planner.core.planning.request import check_request, Request, without_search
@@ -25,8 +25,9 @@ from hnr_planner.core.planning.result import (
     PlannerStatus,
     PlanResult,
 )
-from hnr_planner.core.planning.search import Planner, Search
-from hnr_planner.core.planning.simplify import compile_shorten, shorten
+from hnr_planner.core.planning.search import Planner
+from hnr_planner.core.planning.simplify import compile_shorten
+from hnr_planner.core.planning.stand_off import compile_stand_off
 from hnr_planner.core.spaces.space import Space
 import numpy as np
 from numpy.typing import ArrayLike
@@ -112,7 +113,7 @@ def plan(
     limits = Limits(began + seconds, transitions, cancel)
     known = without_search(request)
     if known is not None:
-        answer = _answer_without_search(request, *known, began)
+        answer = _answer_without_search(request, *known, limits, began)
     else:
         answer = _answer_by_search(request, limits, improve_seconds, improve_searches, began)
     if n_paths > 1 and answer.status is PlannerStatus.SOLVED:
@@ -124,12 +125,12 @@ def _answer_by_search(
     request: Request, limits: Limits, improve_seconds: float, improve_searches: int, began: float
 ) -> PlanResult:
     """Search, and search again for a shorter path where that is asked for."""
-    best = _attempt(request, 0, limits, began)
+    best = attempt(request, 0, limits, began)
     first, iterations = best.first, best.search.iterations
     if first is not None and (improve_seconds or improve_searches):
         until = time.perf_counter() + (improve_seconds or math.inf)
         improving = replace(limits, deadline=min(limits.deadline, until))
-        best, iterations = _improve(request, best, improve_searches or math.inf, improving, began)
+        best, iterations = improve(request, best, improve_searches or math.inf, improving, began)
         limits.cut = limits.cut or improving.cut
     samples = request.space.from_kernel(best.search.samples)
     samples[0] = request.start
@@ -138,7 +139,7 @@ def _answer_by_search(
         message=_message(best, iterations, began),
         planner=request.planner.name,
         path=best.path,
-        length=best.length,
+        length=path_length(best.path) if len(best.path) else math.inf,
         samples=samples,
         parents=best.search.parents.copy(),
         iterations=iterations,
@@ -151,15 +152,16 @@ def _answer_by_search(
 
 
 def _answer_without_search(
-    request: Request, status: PlannerStatus, message: str, began: float
+    request: Request, status: PlannerStatus, message: str, limits: Limits, began: float
 ) -> PlanResult:
     """Answer a request that needs no search to fail or to succeed."""
     path, length, samples, first = np.empty((0, len(request.start))), math.inf, 0, None
     if status is PlannerStatus.SOLVED:
         end = request.goal if request.goal_radius == 0.0 else request.start
         path, samples = np.stack([request.start, end]), 1
+        first = FirstSolution(time.perf_counter() - began, path_length(path))
+        path = with_clearance(request, path, limits)
         length = path_length(path)
-        first = FirstSolution(time.perf_counter() - began, length)
     return PlanResult(
         status=status,
         message=message,
@@ -172,119 +174,27 @@ def _answer_without_search(
         counts={},
         elapsed=time.perf_counter() - began,
         seed=request.seed,
-        cut_by_time=False,
+        cut_by_time=limits.cut,
         first_solution=first,
     )
 
 
-#: What random streams are for.
-SEARCH, SHORTEN = 0, 1
-#: Purpose of the stream that shortens the rough path that a space knows.
-GUIDE = 3
-
-
-class _Attempt(NamedTuple):
-    """One search, and the path that came of it in the caller's frame."""
-
-    status: PlannerStatus
-    search: Search
-    path: Floats
-    length: float
-    first: FirstSolution | None
-
-
-def _attempt(request: Request, number: int, limits: Limits, began: float) -> _Attempt:
-    """Search once and shorten what was found."""
-    status, search, path = _search(request, number, limits)
-    if status is not PlannerStatus.SOLVED:
-        return _Attempt(status, search, path, math.inf, None)
-    first = FirstSolution(time.perf_counter() - began, path_length(path))
-    if not request.simplify or search.taut or len(path) == 2:
-        return _Attempt(status, search, path, first.length, first)
-    path = shorten(request.space, path, request.stream(number, SHORTEN), limits)
-    return _Attempt(status, search, path, path_length(path), first)
-
-
-def _search(request: Request, number: int, limits: Limits) -> tuple[PlannerStatus, Search, Floats]:
-    """
-    Search for a path (m, dim) that is free in the caller's coordinates.
-
-    One so close to a corner that those coordinates round it into the obstacle is none: then the
-    search begins again.
-    """
-    for salt in itertools.count():
-        search = request.planner.start(request.problem, request.stream(number, SEARCH, salt))
-        status = limits.run(search)
-        if status is PlannerStatus.SOLVED:
-            path = _path_found(request, search)
-            if request.space.is_path_free(path):
-                return status, search, path
-            status = limits.stop() or status
-        if status is not PlannerStatus.SOLVED:
-            break
-    return status, search, np.empty((0, request.space.dim))
-
-
-def _path_found(request: Request, search: Search) -> Floats:
-    """Path (m, dim) of a solved search, caller's frame; its ends are the caller's own numbers."""
-    found = search.path
-    path = request.space.from_kernel(found)
-    path[0] = request.start
-    if found[-1].tolist() == request.problem.goal.tolist():
-        path[-1] = request.goal
-    return path
-
-
-def _improve(
-    request: Request, best: _Attempt, searches: float, limits: Limits, began: float
-) -> tuple[_Attempt, int]:
-    """
-    Look for shorter paths: the attempt with the shortest, and all transitions.
-
-    First what the space itself knows of a short way, then searches from fresh seeds.
-    """
-    best = _guided(request, best, limits)
-    iterations, number = best.search.iterations, 1
-    while number <= searches and len(best.path) > 2 and limits.stop() is None:
-        again = _attempt(request, number, limits, began)
-        iterations += again.search.iterations
-        number += 1
-        if again.length < best.length:
-            best = again
-    return best, iterations
-
-
-def _guided(request: Request, best: _Attempt, limits: Limits) -> _Attempt:
-    """Return the attempt with the path over the space's own rough one, where that is shorter."""
-    rough = request.space.rough_path(request.problem.start, request.problem.goal)
-    if rough is None:
-        return best
-    path = request.space.from_kernel(rough)
-    path[0], path[-1] = request.start, request.goal
-    if not request.space.is_path_free(path):
-        return best
-    if request.simplify:
-        path = shorten(request.space, path, request.stream(GUIDE), limits)
-    length = path_length(path)
-    return best._replace(path=path, length=length) if length < best.length else best
-
-
-def _message(attempt: _Attempt, iterations: int, began: float) -> str:
+def _message(best: Attempt, iterations: int, began: float) -> str:
     """Say in words how a search ended."""
-    if attempt.status is PlannerStatus.SOLVED:
-        found = f'path of {attempt.length:.6g} m with {len(attempt.path)} vertices'
+    if best.status is PlannerStatus.SOLVED:
+        found = f'path of {path_length(best.path):.6g} m with {len(best.path)} vertices'
         return f'{found} after {iterations} transitions'
     seconds = time.perf_counter() - began
-    return f'{attempt.status.value} ({iterations} transitions, {seconds:.3g} s)'
+    return f'{best.status.value} ({iterations} transitions, {seconds:.3g} s)'
 
 
-_compiled: set[tuple[type, type[Planner], bool]] = set()
+_compiled: set[tuple[type, type[Planner], bool, bool]] = set()
 
 
 def _compile(request: Request, n_paths: int) -> None:
     """Compile, once for each kind of space and planner, before any clock runs."""
     space = request.space
-    kinds = type(space.data), type(request.planner), n_paths > 1
+    kinds = type(space.data), type(request.planner), n_paths > 1, request.clearance > 0.0
     if kinds in _compiled:
         return
     search = request.planner.start(request.problem, request.stream())
@@ -295,4 +205,6 @@ def _compile(request: Request, n_paths: int) -> None:
     space.first_blocked_segment(ends)
     if n_paths > 1:
         compile_alternatives(request)
+    if request.clearance > 0.0:
+        compile_stand_off(space, ends, request.clearance)
     _compiled.add(kinds)

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from hnr_planner.core.checks import check_number, check_point, check_seed, Floats
+from hnr_planner.core.errors import RequestError
 from hnr_planner.core.kernels import kernel
 from hnr_planner.core.planning.algorithms import make_planner
 from hnr_planner.core.planning.result import PlannerStatus
@@ -31,6 +32,8 @@ class Request:
         Who searches.
     simplify : bool
         Whether the path is shortened.
+    clearance : float
+        Distance to obstacles that the path keeps where there is room, caller's units.
     seed : int
         What every draw follows from.
     problem : Problem
@@ -44,6 +47,7 @@ class Request:
     goal_radius: float
     planner: Planner
     simplify: bool
+    clearance: float
     seed: int
     problem: Problem
 
@@ -79,8 +83,29 @@ def check_request(
     )
     planner = make_planner(algorithm, settings)
     return Request(
-        space, start, goal, goal_radius, planner, bool(simplify), check_seed(seed), problem
+        space,
+        start,
+        goal,
+        goal_radius,
+        planner,
+        bool(simplify),
+        _check_clearance(space, planner, simplify),
+        check_seed(seed),
+        problem,
     )
+
+
+def _check_clearance(space: Space, planner: Planner, simplify: bool) -> float:
+    """Return the clearance that a planner asks for, or raise RequestError."""
+    clearance = getattr(planner, 'clearance', 0.0)  # a setting that only some planners have
+    if clearance > 0.0 and space.walls is None:
+        raise RequestError(
+            f'clearance must be 0 in a {type(space).__name__}, which does not know how far '
+            f'its walls are, got {clearance!r}'
+        )
+    if clearance > 0.0 and not simplify:
+        raise RequestError(f'clearance must be 0 when simplify is false, got {clearance!r}')
+    return float(clearance)
 
 
 def without_search(request: Request) -> tuple[PlannerStatus, str] | None:

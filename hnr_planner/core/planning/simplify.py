@@ -10,7 +10,7 @@ import time
 
 from hnr_planner.core.checks import check_count, check_number, check_points, check_seed, Floats
 from hnr_planner.core.errors import RequestError
-from hnr_planner.core.planning.homology import Islands, NO_ISLANDS
+from hnr_planner.core.planning.homology import Islands
 from hnr_planner.core.planning.lengths import path_length
 from hnr_planner.core.planning.limits import Limits
 from hnr_planner.core.planning.shortcuts import skip, tighten
@@ -97,7 +97,7 @@ def shorten(
     rng: Stream,
     limits: Limits,
     tests_max: int = TESTS_MAX,
-    islands: Islands = NO_ISLANDS,
+    islands: Islands | None = None,
 ) -> Floats:
     """
     Shorten a free path (m, dim) of the caller's frame within limits; the same ends.
@@ -124,7 +124,7 @@ def skip_vertices(
     points: Floats,
     limits: Limits,
     tests_max: int = TESTS_MAX,
-    islands: Islands = NO_ISLANDS,
+    islands: Islands | None = None,
 ) -> tuple[Floats, int]:
     """Keep only vertices that follow each other as the last one seen: (path, tests)."""
     tests, before = 0, math.inf
@@ -137,7 +137,12 @@ def skip_vertices(
 
 
 def _pass_over(
-    space: Space, points: Floats, every: bool, islands: Islands, limits: Limits, tests_max: int
+    space: Space,
+    points: Floats,
+    every: bool,
+    islands: Islands | None,
+    limits: Limits,
+    tests_max: int,
 ) -> tuple[Floats, int]:
     """Skip along all of a path, within limits: (path, tests)."""
     kept, n_kept, last = np.zeros(len(points), dtype=np.int64), 1, len(points) - 1
@@ -151,8 +156,8 @@ def _pass_over(
     return points[np.concatenate([kept[:n_kept], rest])], tests
 
 
-def compile_shorten(space: Space, points: Floats) -> None:
+def compile_shorten(space: Space, points: Floats, islands: Islands | None = None) -> None:
     """Compile what ``shorten`` runs on this kind of space, without doing anything."""
-    skip(space.data, NO_ISLANDS, points, np.zeros(1, dtype=np.int64), 1, True, 0)
-    tighten(space.data, NO_ISLANDS, points[:1], space.margin, stream(0), 0)
+    skip(space.data, islands, points, np.zeros(1, dtype=np.int64), 1, True, 0)
+    tighten(space.data, islands, points[:1], space.margin, stream(0), 0)
     path_length(points)

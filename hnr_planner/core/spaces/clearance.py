@@ -14,6 +14,8 @@ import math
 from hnr_planner.core.kernels import kernel
 import numpy as np
 
+#: The field of distances ends here: what is farther is not told apart [cells].
+FARTHEST_WALL = 254.0
 #: Pieces of a path are about as long as the clearance, but not shorter than this [cells].
 SHORTEST_PIECE = 2.0
 
@@ -26,6 +28,12 @@ def point_clearance(wall_distance, points):
         x, y = points[k]
         clearance[k] = _piece_clearance(wall_distance, x, y, x, y, math.inf)
     return clearance
+
+
+@kernel
+def clearance_within(wall_distance, x, most):
+    """Distance from a point (2,) to the nearest occupied square, at most ``most``."""
+    return _piece_clearance(wall_distance, x[0], x[1], x[0], x[1], most)
 
 
 @kernel
@@ -58,12 +66,30 @@ def _piece_clearance(wall_distance, ax, ay, bx, by, least):
     farthest = max(column, columns - 1 - column, row, rows - 1 - row)
     # A square in this ring is at least ring - 1 from the middle of the segment.
     while ring <= farthest and ring - 1 - half < least:
-        for r in range(max(row - ring, 0), min(row + ring, rows - 1) + 1):
-            stride = 1 if abs(r - row) == ring or ring == 0 else 2 * ring
-            for c in range(column - ring, column + ring + 1, stride):
-                if 0 <= c < columns and wall_distance[r, c] == 0:
-                    least = min(least, _square_distance(ax, ay, bx, by, c, r))
+        bottom, left, n = row - ring, column - ring, 2 * ring + 1
+        for r in (bottom, row + ring):
+            least = _side_clearance(wall_distance, r, left, 0, 1, n, ax, ay, bx, by, least)
+        for c in (left, column + ring):
+            least = _side_clearance(wall_distance, bottom, c, 1, 0, n, ax, ay, bx, by, least)
         ring += 1
+    return least
+
+
+@kernel
+def _side_clearance(wall_distance, row, column, up, right, n, ax, ay, bx, by, least):
+    """Distance from the segment a-b to the occupied among ``n`` cells in a line, as above."""
+    rows, columns = wall_distance.shape
+    x, y, half = (ax + bx) / 2.0, (ay + by) / 2.0, math.hypot(bx - ax, by - ay) / 2.0
+    k = 0
+    while k < n:
+        r, c = row + k * up, column + k * right
+        k += 1
+        if 0 <= r < rows and 0 <= c < columns:
+            # As many cells as this are not occupied.
+            k += max(int(wall_distance[r, c]) - 1, 0)
+            nearest = math.hypot(_outside(x, c), _outside(y, r)) - half
+            if wall_distance[r, c] == 0 and nearest < least:
+                least = min(least, _square_distance(ax, ay, bx, by, c, r))
     return least
 
 

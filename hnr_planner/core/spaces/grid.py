@@ -281,6 +281,11 @@ class GridSpace(Space):
 
     # -- how far the walls are -------------------------------------------------------------------
 
+    @property
+    def walls(self) -> NDArray[np.uint8]:
+        """Distance (rows, columns) in king's moves to the nearest occupied cell, kernel frame."""
+        return self._wall_distance
+
     def clearance(self, points: ArrayLike) -> Floats:
         """Distance (k,) [m] from points (k, 2) to the nearest occupied square; inf without one."""
         cells = self.frame.to_kernel(np.atleast_2d(check_points('points', points, 2)))

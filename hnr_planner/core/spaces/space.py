@@ -70,6 +70,11 @@ class Space(ABC):
         """Distance from a free point to the boundary, roughly and on average, kernel frame."""
 
     @property
+    def walls(self) -> Any:
+        """What kernels measure the distance to walls in; None for a space without clearance."""
+        return None
+
+    @property
     def island_points(self) -> Floats | None:
         """A point (k, dim) in each obstacle that a path can go round; None where unknown."""
         return None

@@ -1,6 +1,7 @@
 """Further paths: free, different by an independent count of windings, the shortest first."""
 
 from collections import deque
+from functools import partial
 from heapq import heappop, heappush
 from itertools import combinations, pairwise
 import math
@@ -8,7 +9,8 @@ from test.brute_force import path_collisions
 from test.laws import maps
 import threading
 
-from hnr_planner.core import ALGORITHMS, GridSpace, plan, PlannerStatus, PlanResult, RequestError
+from hnr_planner import core
+from hnr_planner.core import ALGORITHMS, GridSpace, PlannerStatus, PlanResult, RequestError
 from hnr_planner.core.planning import alternatives as module
 from hnr_planner.core.planning.homology import islands_at, signature
 from hnr_planner.core.planning.simplify import shorten
@@ -21,6 +23,9 @@ import pytest
 
 Bools = NDArray[np.bool_]
 Floats = NDArray[np.float64]
+# No law here is about time, however busy the machine is.
+plan = partial(core.plan, time_limit=60.0)
+
 ORIGIN = (2.0, -1.0, 0.4)
 
 
@@ -172,7 +177,7 @@ def test_on_any_map_they_are_free_different_and_in_order(rectangles, n_paths, se
         blocked[row:top, column:right] = True
     space = GridSpace.from_blocked(blocked, 0.25, origin)
     start, goal = space.cell_centres(2, 2), space.cell_centres(39, 39)
-    result = plan(space, start, goal, alternatives=n_paths, seed=seed, time_limit=30.0)
+    result = plan(space, start, goal, alternatives=n_paths, seed=seed)
     check(space, result, n_paths)
     assert len(result.paths) >= min(len(islands(blocked)) + 1, 2)
 
@@ -193,7 +198,7 @@ def test_a_real_floor_with_a_robot():
         office.data, office.resolution, office.origin, robot_radius=0.22
     )
     for seed in range(2):
-        result = plan(space, (3.0, 22.0), (34.0, 5.0), alternatives=3, seed=seed, time_limit=30.0)
+        result = plan(space, (3.0, 22.0), (34.0, 5.0), alternatives=3, seed=seed)
         check(space, result, 3)
         assert len(result.paths) == 3
 
@@ -209,7 +214,7 @@ def test_a_goal_in_sight_has_other_ways_too():
 
 @pytest.mark.parametrize('algorithm', ALGORITHMS)
 def test_every_algorithm_has_them_and_the_same_seed_gives_the_same(algorithm: str):
-    request = {'algorithm': algorithm, 'alternatives': 3, 'seed': 5, 'time_limit': 30.0}
+    request = {'algorithm': algorithm, 'alternatives': 3, 'seed': 5}
     first, second = (plan(SPACE, START, GOAL, **request) for _ in range(2))
     check(SPACE, first, 3)
     assert not first.cut_by_time

@@ -9,7 +9,6 @@ from test.brute_force import path_collisions
 from test.laws import maps
 
 from hnr_planner.core import GridSpace, plan, RequestError, simplify
-from hnr_planner.core.planning.homology import NO_ISLANDS
 from hnr_planner.core.planning.lengths import path_length
 from hnr_planner.core.planning.shortcuts import skip, tighten
 from hnr_planner.core.streams import stream
@@ -96,8 +95,8 @@ def test_no_work_and_no_time_leave_the_path_as_it_is():
 def test_the_number_of_visibility_tests_is_never_exceeded(budget: int, every: bool):
     points = SPACE.to_kernel(chain(3))
     kept = np.zeros(len(points), dtype=np.int64)
-    assert skip(SPACE.data, NO_ISLANDS, points, kept, 1, every, budget)[1] <= budget
-    assert tighten(SPACE.data, NO_ISLANDS, points, SPACE.margin, stream(0), budget)[1] <= budget
+    assert skip(SPACE.data, None, points, kept, 1, every, budget)[1] <= budget
+    assert tighten(SPACE.data, None, points, SPACE.margin, stream(0), budget)[1] <= budget
 
 
 COMPILING = """

@@ -1,0 +1,102 @@
+"""
+What distance from walls costs: ``python -m benchmarks.clearance`` writes ``clearance.md``.
+
+HNR_MAPS names a folder of further maps.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+import time
+from typing import NamedTuple
+
+from benchmarks.problems import Floats, Problem, problems
+from hnr_planner.core import GridSpace, plan, warm_up
+import numpy as np
+
+#: Clearances [m], and seeds that each request is answered with.
+CLEARANCES, SEEDS = (0.0, 0.1, 0.25, 0.5, 1.0), 5
+RESULTS = Path(__file__).with_name('clearance.md')
+EXPLAINED = """\
+Each row is a mean over the same requests and seeds, with `plan(..., clearance=...)`: length over
+that of the path without clearance, the least and the mean distance to the occupied cells along the
+path [m], the mean of what the path has of the distance asked for, and the median time of the call
+[ms]. The least distance is often that of a door, or of the start or the goal themselves. Distances
+are the robot's centre's: with a radius of .22 m a clearance of .1 m is kept by every path.
+"""
+
+
+class Trade(NamedTuple):
+    """What a clearance asked for gave on a map."""
+
+    problem: str
+    clearance: float
+    length: float
+    least: float
+    mean: float
+    kept: float
+    seconds: float
+
+
+def trades(chosen: list[Problem]) -> Iterator[Trade]:
+    """Measure all clearances on every map."""
+    for problem in chosen:
+        runs = np.array(
+            [
+                [_run(problem.space, ends, seed, clearance) for clearance in CLEARANCES]
+                for ends in problem.requests
+                for seed in range(SEEDS)
+            ]
+        )
+        lengths = runs[:, :, 0] / runs[:, :1, 0]
+        for k, clearance in enumerate(CLEARANCES):
+            least, mean, kept = runs[:, k, 1:4].mean(axis=0)
+            seconds = float(np.median(runs[:, k, 4]))
+            yield Trade(problem.name, clearance, lengths[:, k].mean(), least, mean, kept, seconds)
+
+
+def _run(space: GridSpace, ends: Floats, seed: int, clearance: float) -> list[float]:
+    """Length [m], least, mean and kept clearance, and the time [s] of one request."""
+    began = time.perf_counter()
+    path = plan(space, *ends, seed=seed, clearance=clearance).path
+    seconds = time.perf_counter() - began
+    along = _points_along(path, space.resolution)
+    distances = space.clearance(along)
+    kept = np.minimum(distances / clearance, 1.0).mean() if clearance else 1.0
+    length = np.hypot(*np.diff(path, axis=0).T).sum()
+    return [length, space.path_clearance(path), distances.mean(), kept, seconds]
+
+
+def _points_along(path: Floats, spacing: float) -> Floats:
+    """Points (k, 2) on a path, evenly spread."""
+    at = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(path, axis=0).T))])
+    points = np.arange(0.0, at[-1], spacing)
+    return np.stack([np.interp(points, at, path[:, i]) for i in range(2)], axis=1)
+
+
+def clearance_table(measured: list[Trade]) -> str:
+    """Return the trades as a table in Markdown."""
+    rows = [
+        '| map | clearance | length | least | mean | kept | time |',
+        '| --- ' + '| ---: ' * 6 + '|',
+    ]
+    for row in measured:
+        rows.append(
+            f'| {row.problem} | {row.clearance:g} | {row.length:.3f} | {row.least:.3f} | '
+            f'{row.mean:.3f} | {row.kept:.3f} | {1e3 * row.seconds:.2f} |'
+        )
+    return '\n'.join(rows)
+
+
+def main() -> None:
+    """Measure, print and write."""
+    warm_up()
+    chosen = [problem for problem in problems(quick=False) if not problem.is_spiral]
+    table = clearance_table(list(trades(chosen)))
+    print(table)
+    RESULTS.write_text(f'# Length against clearance\n\n{EXPLAINED}\n{table}\n')
+
+
+if __name__ == '__main__':
+    main()

@@ -1,0 +1,129 @@
+"""
+Attempts at a request: search, shorten, keep away from walls; again, for a better path.
+
+Each attempt has random streams of its own, so that none depends on how many came before it or on
+how long they took.
+"""
+
+import itertools
+import math
+import time
+from typing import NamedTuple
+
+from hnr_planner.core.checks import Floats
+from hnr_planner.core.planning.lengths import path_length
+from hnr_planner.core.planning.limits import Limits
+from hnr_planner.core.planning.request import Request
+from hnr_planner.core.planning.result import FirstSolution, PlannerStatus
+from hnr_planner.core.planning.search import Search
+from hnr_planner.core.planning.simplify import shorten
+from hnr_planner.core.planning.stand_off import path_cost, stand_off
+import numpy as np
+
+#: What random streams are for: to search, to shorten what was found, to shorten a rough path.
+SEARCH, SHORTEN, ROUGH = 0, 1, 3
+
+
+class Attempt(NamedTuple):
+    """
+    One search, and the path that came of it.
+
+    Attributes
+    ----------
+    status : PlannerStatus
+    search : Search
+    path : (m, dim)
+        Caller's frame; (0, dim) when there is none.
+    cost : float
+        What is least for the best path: its length, and more near walls if a clearance was asked.
+    first : FirstSolution or None
+
+    """
+
+    status: PlannerStatus
+    search: Search
+    path: Floats
+    cost: float
+    first: FirstSolution | None
+
+
+def attempt(request: Request, number: int, limits: Limits, began: float) -> Attempt:
+    """Search once and better what was found."""
+    status, search, path = _search(request, number, limits)
+    if status is not PlannerStatus.SOLVED:
+        return Attempt(status, search, path, math.inf, None)
+    first = FirstSolution(time.perf_counter() - began, path_length(path))
+    if request.simplify and not search.taut and len(path) > 2:
+        path = shorten(request.space, path, request.stream(number, SHORTEN), limits)
+    path = with_clearance(request, path, limits)
+    return Attempt(status, search, path, path_cost(request.space, path, request.clearance), first)
+
+
+def improve(
+    request: Request, best: Attempt, searches: float, limits: Limits, began: float
+) -> tuple[Attempt, int]:
+    """
+    Look for better paths: the best attempt, and the transitions of all.
+
+    First what the space itself knows of a short way, then so many searches from fresh seeds.
+    """
+    best = _over_rough_path(request, best, limits)
+    iterations, number = best.search.iterations, 1
+    while number <= searches and len(best.path) > 2 and limits.stop() is None:
+        again = attempt(request, number, limits, began)
+        iterations += again.search.iterations
+        number += 1
+        if again.cost < best.cost:
+            best = again
+    return best, iterations
+
+
+def with_clearance(request: Request, path: Floats, limits: Limits) -> Floats:
+    """Return a path (m, dim) moved away from walls, where that was asked for."""
+    if request.clearance == 0.0:
+        return path
+    return stand_off(request.space, path, request.clearance, limits)
+
+
+def _search(request: Request, number: int, limits: Limits) -> tuple[PlannerStatus, Search, Floats]:
+    """
+    Search for a path (m, dim) that is free in the caller's coordinates.
+
+    One so close to a corner that those coordinates round it into the obstacle is none: then the
+    search begins again.
+    """
+    for salt in itertools.count():
+        search = request.planner.start(request.problem, request.stream(number, SEARCH, salt))
+        status = limits.run(search)
+        if status is PlannerStatus.SOLVED:
+            path = _in_caller_s_frame(request, search.path)
+            if request.space.is_path_free(path):
+                return status, search, path
+            status = limits.stop() or status
+        if status is not PlannerStatus.SOLVED:
+            break
+    return status, search, np.empty((0, request.space.dim))
+
+
+def _in_caller_s_frame(request: Request, points: Floats) -> Floats:
+    """Path (m, dim) found in the kernel frame; its ends are the caller's own numbers."""
+    path = request.space.from_kernel(points)
+    path[0] = request.start
+    if points[-1].tolist() == request.problem.goal.tolist():
+        path[-1] = request.goal
+    return path
+
+
+def _over_rough_path(request: Request, best: Attempt, limits: Limits) -> Attempt:
+    """Return the attempt with the path over the space's own rough one, where that is better."""
+    rough = request.space.rough_path(request.problem.start, request.problem.goal)
+    if rough is None:
+        return best
+    path = _in_caller_s_frame(request, rough)
+    if not request.space.is_path_free(path):
+        return best
+    if request.simplify:
+        path = shorten(request.space, path, request.stream(ROUGH), limits)
+    path = with_clearance(request, path, limits)
+    cost = path_cost(request.space, path, request.clearance)
+    return best._replace(path=path, cost=cost) if cost < best.cost else best
