@@ -11,7 +11,7 @@ from hnr_planner.core.planning.algorithms import ALGORITHMS
 from hnr_planner.core.planning.hit_and_run import HitAndRun
 from hnr_planner.core.planning.plan import plan
 from hnr_planner.core.planning.result import FirstSolution, PlannerStatus, PlanResult
-from hnr_planner.core.planning.roadmap import Roadmap
+from hnr_planner.core.planning.roadmap.roadmap import Roadmap
 from hnr_planner.core.planning.rrt import RRT
 from hnr_planner.core.planning.simplify import simplify
 from hnr_planner.core.sampling.sample import sample, WALKS

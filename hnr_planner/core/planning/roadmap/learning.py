@@ -13,12 +13,15 @@ from hnr_planner.core.borrowed import borrowed
 from hnr_planner.core.checks import Floats
 from hnr_planner.core.errors import Cancelled
 from hnr_planner.core.kernels import kernel
-from hnr_planner.core.planning.corners import distinct, find_corners, find_opening, look_around
-from hnr_planner.core.planning.exits import arrive, Exits, exits_of
 from hnr_planner.core.planning.limits import Event
-from hnr_planner.core.planning.rrt import draw_in_box
-from hnr_planner.core.planning.search import NONE
-from hnr_planner.core.planning.sights import (
+from hnr_planner.core.planning.roadmap.corners import (
+    distinct,
+    find_corners,
+    find_opening,
+    look_around,
+)
+from hnr_planner.core.planning.roadmap.exits import arrive, Exits, exits_of
+from hnr_planner.core.planning.roadmap.sights import (
     ASK,
     ask_through,
     edges_of,
@@ -29,6 +32,8 @@ from hnr_planner.core.planning.sights import (
     Sights,
     Ways,
 )
+from hnr_planner.core.planning.rrt import draw_in_box
+from hnr_planner.core.planning.search import NONE
 from hnr_planner.core.sampling.walks import hit_and_run_step
 from hnr_planner.core.spaces.primitives import are_free, contains
 from hnr_planner.core.spaces.space import Space

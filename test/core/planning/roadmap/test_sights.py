@@ -1,8 +1,8 @@
 """Tables of shortest ways: equal to those of another implementation, made new or mended."""
 
-from hnr_planner.core.planning.corners import distinct
+from hnr_planner.core.planning.roadmap.corners import distinct
+from hnr_planner.core.planning.roadmap.sights import edges_of, mend, no_ways, SEEN, Ways
 from hnr_planner.core.planning.search import NONE
-from hnr_planner.core.planning.sights import edges_of, mend, no_ways, SEEN, Ways
 from hypothesis import given, settings
 from hypothesis import strategies as st
 import numpy as np

@@ -15,10 +15,10 @@ from hnr_planner.core.borrowed import borrowed
 from hnr_planner.core.checks import check_seed, Floats
 from hnr_planner.core.errors import RequestError
 from hnr_planner.core.kernels import kernel
-from hnr_planner.core.planning.exits import nodes_seen, way_to_node
 from hnr_planner.core.planning.hit_and_run_connect import HitAndRunConnect
 from hnr_planner.core.planning.limits import Event
-from hnr_planner.core.planning.roadmap_build import Knowledge, learn, N_DRAWS, nothing_known
+from hnr_planner.core.planning.roadmap.exits import nodes_seen, way_to_node
+from hnr_planner.core.planning.roadmap.learning import Knowledge, learn, N_DRAWS, nothing_known
 from hnr_planner.core.planning.search import NONE, Problem, Search
 from hnr_planner.core.spaces.primitives import sees
 from hnr_planner.core.spaces.space import Space
