@@ -1,5 +1,6 @@
 """Maps on their way from the topic into use, with a line on the log for each."""
 
+from collections.abc import Callable
 import time
 
 from hnr_planner.ros.map_messages import grid_from_message
@@ -20,11 +21,14 @@ class MapInput:
         Subscribes, and has the log.
     settings : Settings
         Decide how a map becomes a space.
+    on_change : callable
+        Called when another map is in use.
 
     """
 
-    def __init__(self, node: Node, settings: Settings) -> None:
+    def __init__(self, node: Node, settings: Settings, on_change: Callable[[], None]) -> None:
         self._logger = node.get_logger()
+        self._on_change = on_change
         self._store = MapStore(settings)
         self._came = time.monotonic()
         self._subscription = MapSubscription(
@@ -54,7 +58,7 @@ class MapInput:
             self._logger.error(str(error))
             return
         if snapshot is not None:
-            self._log('prepared again for changed parameters', snapshot, began)
+            self._tell('prepared again for changed parameters', snapshot, began)
 
     def close(self) -> None:
         """Listen no more."""
@@ -70,8 +74,9 @@ class MapInput:
             self._logger.error(f'map refused, {rest}: {error}')
             return
         self._came = began
-        self._log('received and prepared', snapshot, began)
+        self._tell('received and prepared', snapshot, began)
 
-    def _log(self, done: str, snapshot: MapSnapshot, began: float) -> None:
+    def _tell(self, done: str, snapshot: MapSnapshot, began: float) -> None:
         taken = time.monotonic() - began
         self._logger.info(f'map {done} in {taken:.3f} s: {snapshot.grid}')
+        self._on_change()

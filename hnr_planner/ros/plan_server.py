@@ -5,10 +5,12 @@ import threading
 import traceback
 from typing import NamedTuple
 
+from hnr_planner.ros.answer import answer, NewestMap, ToFrame
 from hnr_planner.ros.outcomes import Outcome, Refusal
 from hnr_planner.ros.path_messages import path_message
+from hnr_planner.ros.path_watch import PathWatch
 from hnr_planner.ros.publications import Publications
-from hnr_planner.ros.requests import answer, NewestMap, Report, Request
+from hnr_planner.ros.requests import Report, Request
 from hnr_planner.ros.searches import RunningSearches
 from hnr_planner.ros.settings import Settings
 from hnr_planner.ros.statistics import Statistics
@@ -35,16 +37,25 @@ class PlanServer:
         Returns the parameters in force.
     newest_map : callable
         Returns the map in use, or raises Refusal.
+    to_frame : callable
+        Brings a pose into the frame of the map, or raises Refusal.
 
     """
 
     def __init__(
-        self, node: Node, settings: Callable[[], Settings], newest_map: NewestMap
+        self,
+        node: Node,
+        settings: Callable[[], Settings],
+        newest_map: NewestMap,
+        to_frame: ToFrame,
     ) -> None:
         self._node = node
         self._settings = settings
         self._newest_map = newest_map
+        self._to_frame = to_frame
         self._publications = Publications(node)
+        self._in_order = threading.Lock()
+        self.watch = PathWatch(node, self._publications, newest_map)
         self.searches = RunningSearches()
         self.statistics = Statistics()
 
@@ -67,10 +78,12 @@ class PlanServer:
         settings = self._settings()
         report = self._report(request, settings, cancel or threading.Event())
         self.statistics.count(report)
-        self._log(caller, report)
+        self._log(caller, request, report)
         path = path_message(report, settings.pose_spacing)
         name = f'{self._node.get_fully_qualified_name()}/{caller}'
-        self._publications.hand_over(report, path, name, settings.samples_max)
+        with self._in_order:
+            self._publications.hand_over(report, path, name, settings.samples_max)
+            self.watch.follow(report)
         return Answer(report, path)
 
     def end(self) -> None:
@@ -86,7 +99,7 @@ class PlanServer:
         """Return the answer to `request`, even if the planner has a defect."""
         try:
             with self.searches.one(cancel):
-                return answer(request, settings, self._newest_map, cancel)
+                return answer(request, settings, self._newest_map, cancel, self._to_frame)
         except Refusal as refusal:
             return Report(refusal.outcome, refusal.why, request, elapsed=0.0)
         except Exception as error:  # without an answer the caller would wait for ever
@@ -94,10 +107,10 @@ class PlanServer:
             why = f'a defect of the planner, please report it: {error!r}'
             return Report(Outcome.INTERNAL_ERROR, why, request, elapsed=0.0)
 
-    def _log(self, caller: str, report: Report) -> None:
+    def _log(self, caller: str, request: Request, report: Report) -> None:
         """Say in one line how a request ended."""
         logger = self._node.get_logger()
-        if report.request.omits_start:
+        if request.omits_start:
             logger.info(
                 f'{caller}: the start is (0, 0) in no frame, as if left out: taken literally'
             )
