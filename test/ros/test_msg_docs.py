@@ -240,4 +240,4 @@ def test_example_of_a_map_works(client: Client, planner: NodeProcess) -> None:
     publishing_example(client, 'map')
     planner.wait_for('3 x 2 cells of 1 m')
     published = {words[-3] for words in examples('ros2 topic pub')}
-    assert published == {'map', 'initialpose', 'goal_pose'}
+    assert published == {'map', 'map_updates', 'initialpose', 'goal_pose'}

@@ -129,7 +129,7 @@ def test_map_that_cannot_be_prepared_leaves_the_last_good_one() -> None:
     endless = np.broadcast_to(np.int8(0), (10**8, 10**8))
     with pytest.raises(MapError, match=r'preparing the map failed: .*MemoryError.* allocate'):
         receive(maps, endless)
-    assert maps.in_use
+    assert maps.snapshot is not None
     assert ask(maps).outcome is Outcome.SOLVED
 
 
@@ -157,6 +157,19 @@ def test_newer_map_is_prepared_while_the_old_one_answers() -> None:
     maps.receive(read_slowly)
     assert reports[0].outcome is Outcome.SOLVED
     assert ask(maps).outcome is Outcome.UNREACHABLE
+
+
+def test_same_map_is_not_prepared_again() -> None:
+    maps = store(rooms())
+    before = maps.newest()
+    receive(maps, rooms())
+    assert maps.newest() is before
+    receive(maps, rooms(), frame='floor')
+    assert maps.newest().number == before.number + 1
+    other = rooms()
+    other[0, 0] = -1
+    receive(maps, other, frame='floor')
+    assert maps.newest().number == before.number + 2
 
 
 def test_changed_robot_radius_prepares_the_last_map_again() -> None:
