@@ -175,17 +175,18 @@ def test_bond_lives_while_the_node_is_active(client: Client, planner: NodeProces
     heard = client.listen(Status, '/bond', MANY)
     change(client, CONFIGURE)
     for end in ((DEACTIVATE,), ()):
-        ours = Bond(client.node, '/bond', 'hnr_planner')
-        ours.start()
+        manager = Client()
+        bond = Bond(manager.node, '/bond', 'hnr_planner')
+        bond.start()
         assert change(client, ACTIVATE) == [True]
-        assert ours.wait_until_formed(Duration(seconds=10))
-        assert any(message.active and message.instance_id != ours.instance_id for message in heard)
+        assert bond.wait_until_formed(Duration(seconds=10))
+        assert any(message.active and message.instance_id != bond.instance_id for message in heard)
         if end:
             assert change(client, *end) == [True]
         else:
             assert planner.end(signal.SIGTERM) == 0
-        assert ours.wait_until_broken(Duration(seconds=3)), 'told at once, not missed'
-        ours.shutdown()
+        assert bond.wait_until_broken(Duration(seconds=3)), 'told at once, not missed'
+        manager.close()
     assert 'Traceback' not in planner.log, planner.log
 
 
