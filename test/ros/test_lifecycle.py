@@ -198,6 +198,25 @@ def test_parameters_change_in_every_state(client: Client) -> None:
     assert client.get_parameters('robot_radius') == [0.01 * SHUTDOWN[UNCONFIGURED]]
 
 
+def test_node_survives_many_changes_while_requests_come(
+    client: Client, planner: NodeProcess
+) -> None:
+    """Subscriptions come and go under the executor's eyes; every request is answered by name."""
+    client.publish_map(grid_message(two_rooms()))
+    change(client, CONFIGURE, ACTIVATE)
+    planner.wait_for('map received')
+    known = {Outcome.SOLVED, Outcome.NOT_ACTIVE, Outcome.NO_MAP, Outcome.MAP_NOT_READY}
+    futures = []
+    for turn in range(20):
+        futures += [client.send_plan(START, GOAL) for _ in range(5)]
+        client.set_parameters(rviz_clicks=bool(turn % 2))
+        assert all(change(client, DEACTIVATE, CLEANUP, CONFIGURE, ACTIVATE))
+    outcomes = {client.outcome_of(result_of(future).plan)[0] for future in futures}
+    assert outcomes <= known | {Outcome.CANCELLED}
+    until(lambda: outcome(client) is Outcome.SOLVED, 'the map again')
+    assert 'Traceback' not in planner.log and planner.popen.poll() is None
+
+
 @pytest.mark.parametrize('where', WAY_TO)
 @pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])
 def test_signal_in_every_state_is_a_clean_end(
