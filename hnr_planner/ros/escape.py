@@ -111,10 +111,16 @@ class _Surroundings(NamedTuple):
         return cls(first - 1.0, here, parts, occupied & ~own, in_obstacle)
 
     def exits(self, margin: float) -> _Exits:
-        """Return the free points that some way leads to from here."""
+        """
+        Return free points that some way leads to from here.
+
+        A shortest way enters free space where it ends, so cells amid free ones are left out.
+        """
         _, region = cv2.connectedComponents((~self.obstacles).view(np.uint8), connectivity=4)
         around = region[_cells_around(self.here)]
-        rows, columns = np.nonzero((self.parts > 0) & np.isin(region, around[around > 0]))
+        free = self.parts > 0
+        amid = cv2.erode(free.view(np.uint8), np.ones((3, 3), dtype=np.uint8)) > 0
+        rows, columns = np.nonzero(free & ~amid & np.isin(region, around[around > 0]))
         cells = np.stack([columns, rows], axis=-1)
         nearest = np.clip(self.here, cells + margin, cells + (1.0 - margin))
         parts = self.parts[rows, columns]
