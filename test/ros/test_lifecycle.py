@@ -4,6 +4,8 @@ from collections.abc import Iterator
 from importlib.util import find_spec
 from pathlib import Path
 import signal
+import subprocess
+import sys
 from test.ros.harness import (
     Client,
     grid_message,
@@ -215,6 +217,45 @@ def test_node_survives_many_changes_while_requests_come(
     assert outcomes <= known | {Outcome.CANCELLED}
     until(lambda: outcome(client) is Outcome.SOLVED, 'the map again')
     assert 'Traceback' not in planner.log and planner.popen.poll() is None
+
+
+FAILING = """
+import rclpy
+from hnr_planner.ros.managed_node import ManagedNode
+
+
+class Failing(ManagedNode):
+    held = 0
+
+    def configure(self):
+        self.held += 1
+
+    def activate(self):
+        raise ValueError('no power')
+
+    def cleanup(self):
+        self.held = 0
+
+
+rclpy.init()
+node = Failing('failing')
+said = [node.trigger_configure().name, node.state, node.held]
+said += [node.trigger_activate().name, node.state, node.held]
+said += [node.trigger_configure().name, node.state, node.held]
+node.destroy_node()
+print(said, node.state, node.held)
+rclpy.try_shutdown()
+"""
+
+
+def test_transition_that_fails_is_told_and_undone() -> None:
+    done = subprocess.run(
+        [sys.executable, '-c', FAILING], capture_output=True, text=True, timeout=60, check=False
+    )
+    assert done.returncode == 0, done.stderr
+    steps = ['SUCCESS', INACTIVE, 1, 'ERROR', UNCONFIGURED, 0, 'SUCCESS', INACTIVE, 1]
+    assert done.stdout.strip() == f'{steps} {FINALIZED} 0'
+    assert 'ValueError: no power' in done.stderr
 
 
 @pytest.mark.parametrize('where', WAY_TO)
