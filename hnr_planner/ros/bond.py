@@ -1,5 +1,6 @@
 """The bond by which Nav2's lifecycle manager sees that a node lives, where bondpy is installed."""
 
+from rclpy.duration import Duration
 from rclpy.node import Node
 
 try:
@@ -12,6 +13,8 @@ else:
 TOPIC = 'bond'
 HEARTBEAT_PERIOD, HEARTBEAT_TIMEOUT = 0.1, 4.0
 """Seconds, as the manager has them by default."""
+LONGEST_FAREWELL = Duration(seconds=0.2)
+"""How long the other side is told again and again that the bond is broken."""
 
 
 class NodeBond:
@@ -33,6 +36,8 @@ class NodeBond:
     def close(self) -> None:
         """Break the bond, and tell the other side."""
         if HAVE_BOND:
+            self._bond.break_bond()
+            self._bond.wait_until_broken(LONGEST_FAREWELL)
             # By itself it would leave the node with a subscription that is no more.
             self._node.destroy_subscription(self._bond.sub)
             self._bond.shutdown()
