@@ -9,11 +9,13 @@ class Outcome(enum.Enum):
     """How a request ended; those that the planner itself decides bear its status' name."""
 
     SOLVED = enum.auto()
+    NOT_ACTIVE = enum.auto()
     NO_MAP = enum.auto()
     MAP_NOT_READY = enum.auto()
     MAP_CHANGED = enum.auto()
     BAD_REQUEST = enum.auto()
     BAD_FRAME = enum.auto()
+    NO_START = enum.auto()
     INVALID_START = enum.auto()
     INVALID_GOAL = enum.auto()
     UNREACHABLE = enum.auto()

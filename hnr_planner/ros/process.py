@@ -8,6 +8,7 @@ SIGINT and SIGTERM end the process with exit code 0, however often and whenever 
 """
 
 from collections.abc import Callable
+from contextlib import suppress
 import os
 import signal
 import sys
@@ -99,7 +100,9 @@ def _spin(
     def spin() -> None:
         try:
             while not ending.is_set():
-                executor.spin_once()
+                # What is destroyed while the executor looks at it is gone at its next look.
+                with suppress(rclpy_implementation.InvalidHandle):
+                    executor.spin_once()
         except Exception as error:
             failures.append(error)
             stop.request()

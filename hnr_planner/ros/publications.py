@@ -72,6 +72,11 @@ class Publications:
             path.header.stamp = self._stamps.later()
             self._waiting.put(_Result(report, path, name, samples_max))
 
+    def announce(self, report: Report, name: str) -> None:
+        """Publish an outcome that no request asked for."""
+        with self._in_order:
+            self._outcome.publish(outcome_message(report, name, self._stamps.later()))
+
     def leave_out_pictures(self) -> None:
         """Publish no more samples and markers: the last answers must not queue behind them."""
         self._pictures = False

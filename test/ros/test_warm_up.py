@@ -9,7 +9,8 @@ import threading
 
 from hnr_planner.core import ALGORITHMS, warm_up
 from hnr_planner.ros.map_store import Grid, MapStore
-from hnr_planner.ros.requests import answer, Pose, Request
+from hnr_planner.ros.answer import answer
+from hnr_planner.ros.requests import Pose, Request
 from hnr_planner.ros.settings import Settings
 from numba.core.dispatcher import Dispatcher
 import numpy as np
@@ -31,14 +32,19 @@ before = compiled()
 rooms = np.zeros((60, 60), dtype=np.int8)
 rooms[:, 20], rooms[:50, 40], rooms[30:34, 20], rooms[0, 0] = 100, 100, 0, -1
 start, near, far = (Pose((x, 0.5, 0.0)) for x in (0.5, 1.02, 2.8))
-for changes in ({}, {'robot_radius': 0.06, 'unknown': 'free'}, {'goal_radius': 0.2}):
+for changes in (
+    {},
+    {'robot_radius': 0.06, 'unknown': 'free'},
+    {'goal_radius': 0.2},
+    {'escape_radius': 0.5},
+):
     settings = Settings(optimize_for=0.05, time_limit=0.5, **changes)
     maps = MapStore(settings)
     maps.receive(lambda: Grid(rooms, 0.05, (0.0, 0.0, 0.1), 'map'))
     for algorithm in ALGORITHMS:
-        for goal in (start, near, far):
+        for begin, goal in ((start, start), (start, near), (start, far), (near, far)):
             for tolerance in (0.0, 0.3):
-                request = Request(start, goal, tolerance, algorithm)
+                request = Request(begin, goal, tolerance, algorithm)
                 answer(request, settings, maps.newest, threading.Event())
 late = {f'{module}.{name}' for module, name, _ in compiled() - before}
 sys.exit(f'compiled during requests: {sorted(late)}' if late else 0)

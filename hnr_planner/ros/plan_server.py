@@ -1,0 +1,121 @@
+"""The way of a request through the node, whoever sends it: gate, plan, count, tell, publish."""
+
+from collections.abc import Callable
+import threading
+import traceback
+from typing import NamedTuple
+
+from hnr_planner.ros.answer import answer, NewestMap, ToFrame
+from hnr_planner.ros.outcomes import Outcome, Refusal
+from hnr_planner.ros.path_messages import path_message
+from hnr_planner.ros.path_watch import PathWatch
+from hnr_planner.ros.publications import Publications
+from hnr_planner.ros.requests import Report, Request
+from hnr_planner.ros.searches import RunningSearches
+from hnr_planner.ros.settings import Settings
+from hnr_planner.ros.statistics import Statistics
+from nav_msgs.msg import Path
+from rclpy.node import Node
+
+
+class Answer(NamedTuple):
+    """What came of a request, and its path as a message: stamped, empty after a failure."""
+
+    report: Report
+    path: Path
+
+
+class PlanServer:
+    """
+    Answers requests for a path; any number of threads may ask at once.
+
+    Parameters
+    ----------
+    node : Node
+        Whose log and topics are used.
+    settings : callable
+        Returns the parameters in force.
+    newest_map : callable
+        Returns the map in use, or raises Refusal.
+    to_frame : callable
+        Brings a pose into the frame of the map, or raises Refusal.
+
+    """
+
+    def __init__(
+        self,
+        node: Node,
+        settings: Callable[[], Settings],
+        newest_map: NewestMap,
+        to_frame: ToFrame,
+    ) -> None:
+        self._node = node
+        self._settings = settings
+        self._newest_map = newest_map
+        self._to_frame = to_frame
+        self._publications = Publications(node)
+        self._in_order = threading.Lock()
+        self.watch = PathWatch(node, self._publications, newest_map)
+        self.searches = RunningSearches()
+        self.statistics = Statistics()
+
+    def answer(
+        self, caller: str, request: Request, cancel: threading.Event | None = None
+    ) -> Answer:
+        """
+        Return the answer to `request`; all about it is published soon.
+
+        Parameters
+        ----------
+        caller : str
+            Service, action or topic that the request came by.
+        request : Request
+            What is asked for.
+        cancel : threading.Event, optional
+            Ends this search when it is set.
+
+        """
+        settings = self._settings()
+        report = self._report(request, settings, cancel or threading.Event())
+        self.statistics.count(report)
+        self._log(caller, request, report)
+        path = path_message(report, settings.pose_spacing)
+        name = f'{self._node.get_fully_qualified_name()}/{caller}'
+        with self._in_order:
+            self._publications.hand_over(report, path, name, settings.samples_max)
+            self.watch.follow(report)
+        return Answer(report, path)
+
+    def end(self) -> None:
+        """Let no more searches in, end those that run, and publish no more pictures."""
+        self._publications.leave_out_pictures()
+        self.searches.disable()
+
+    def close(self) -> None:
+        """Publish the last results."""
+        self._publications.close()
+
+    def _report(self, request: Request, settings: Settings, cancel: threading.Event) -> Report:
+        """Return the answer to `request`, even if the planner has a defect."""
+        try:
+            with self.searches.one(cancel):
+                return answer(request, settings, self._newest_map, cancel, self._to_frame)
+        except Refusal as refusal:
+            return Report(refusal.outcome, refusal.why, request, elapsed=0.0)
+        except Exception as error:  # without an answer the caller would wait for ever
+            self._node.get_logger().error(f'a defect of the planner:\n{traceback.format_exc()}')
+            why = f'a defect of the planner, please report it: {error!r}'
+            return Report(Outcome.INTERNAL_ERROR, why, request, elapsed=0.0)
+
+    def _log(self, caller: str, request: Request, report: Report) -> None:
+        """Say in one line how a request ended."""
+        logger = self._node.get_logger()
+        if request.omits_start:
+            logger.info(
+                f'{caller}: the start is (0, 0) in no frame, as if left out: taken literally'
+            )
+        text = f'{caller}: {report.outcome.name} after {report.elapsed:.3f} s: {report.why}'
+        if report.solved:
+            logger.info(text)
+        else:
+            logger.warning(text)

@@ -1,0 +1,271 @@
+"""The life of the node: every state, every transition, and what is answered in each."""
+
+from collections.abc import Iterator
+from importlib.util import find_spec
+from pathlib import Path
+import signal
+import subprocess
+import sys
+from test.ros.harness import (
+    Client,
+    grid_message,
+    MANY,
+    maze,
+    node_process,
+    NodeProcess,
+    pose,
+    result_of,
+    two_rooms,
+    until,
+)
+
+from diagnostic_msgs.msg import DiagnosticArray
+from hnr_planner.ros.outcomes import Outcome
+from lifecycle_msgs.msg import Transition
+from lifecycle_msgs.srv import ChangeState, GetState
+import pytest
+from rclpy.duration import Duration
+
+START, GOAL = pose(0.5, 0.6), pose(4.5, 0.7)
+UNCONFIGURED, INACTIVE, ACTIVE, FINALIZED = 'unconfigured', 'inactive', 'active', 'finalized'
+CONFIGURE, CLEANUP = Transition.TRANSITION_CONFIGURE, Transition.TRANSITION_CLEANUP
+ACTIVATE, DEACTIVATE = Transition.TRANSITION_ACTIVATE, Transition.TRANSITION_DEACTIVATE
+SHUTDOWN = {
+    UNCONFIGURED: Transition.TRANSITION_UNCONFIGURED_SHUTDOWN,
+    INACTIVE: Transition.TRANSITION_INACTIVE_SHUTDOWN,
+    ACTIVE: Transition.TRANSITION_ACTIVE_SHUTDOWN,
+}
+WAY_TO = {
+    UNCONFIGURED: (),
+    INACTIVE: (CONFIGURE,),
+    ACTIVE: (CONFIGURE, ACTIVATE),
+    FINALIZED: (SHUTDOWN[UNCONFIGURED],),
+}
+"""Transitions that lead to each state from the first one."""
+
+
+@pytest.fixture
+def planner(tmp_path: Path) -> Iterator[NodeProcess]:
+    """Run a planning node that waits for transitions from outside."""
+    with node_process('planner_node', tmp_path / 'log', autostart=False) as process:
+        yield process
+
+
+@pytest.fixture
+def client(planner: NodeProcess) -> Iterator[Client]:
+    """Return a client of that node."""
+    client = Client()
+    yield client
+    client.close()
+
+
+def change(client: Client, *transitions: int) -> list[bool]:
+    """Ask for transitions, one after the other; return whether each was made."""
+    return [
+        client.call(
+            ChangeState,
+            '/hnr_planner/change_state',
+            ChangeState.Request(transition=Transition(id=transition)),
+        ).success
+        for transition in transitions
+    ]
+
+
+def state(client: Client, node: str = '/hnr_planner') -> str:
+    """Return the name of the node's state."""
+    answer = client.call(GetState, f'{node}/get_state', GetState.Request())
+    return answer.current_state.label
+
+
+def outcome(client: Client) -> Outcome:
+    """Ask for a path and return how that ended."""
+    return client.outcome_of(client.plan(START, GOAL))[0]
+
+
+def health(client: Client) -> str:
+    """Return what the node says of itself from now on."""
+    heard = client.listen(DiagnosticArray, '/diagnostics', MANY)
+    return until(lambda: heard, 'a report of health')[0].status[0].message
+
+
+def test_node_starts_itself_by_default(tmp_path: Path) -> None:
+    with node_process('planner_node', tmp_path / 'log'):
+        client = Client()
+        assert state(client) == ACTIVE
+        assert outcome(client) is Outcome.NO_MAP
+        client.close()
+
+
+def test_every_state_answers_at_once_and_only_the_active_one_plans(
+    client: Client, planner: NodeProcess
+) -> None:
+    client.publish_map(grid_message(two_rooms()))
+    assert state(client) == UNCONFIGURED
+    assert outcome(client) is Outcome.NOT_ACTIVE
+    assert health(client).startswith('NOT_ACTIVE')
+
+    assert change(client, CONFIGURE) == [True]
+    assert state(client) == INACTIVE
+    planner.wait_for('map received')
+    assert outcome(client) is Outcome.NOT_ACTIVE
+
+    assert change(client, ACTIVATE) == [True]
+    assert state(client) == ACTIVE
+    assert outcome(client) is Outcome.SOLVED
+    assert health(client) == 'ready'
+
+    assert change(client, DEACTIVATE) == [True]
+    assert outcome(client) is Outcome.NOT_ACTIVE
+    assert change(client, ACTIVATE) == [True]
+    assert outcome(client) is Outcome.SOLVED, 'the map was kept'
+
+    assert change(client, DEACTIVATE, CLEANUP) == [True, True]
+    assert state(client) == UNCONFIGURED
+    assert outcome(client) is Outcome.NOT_ACTIVE
+
+    received = planner.log.count('map received')
+    assert change(client, CONFIGURE, ACTIVATE) == [True, True]
+    until(lambda: planner.log.count('map received') > received, 'the latched map again')
+    assert outcome(client) is Outcome.SOLVED
+
+    assert change(client, SHUTDOWN[ACTIVE]) == [True]
+    assert state(client) == FINALIZED
+    assert outcome(client) is Outcome.NOT_ACTIVE
+    assert planner.end(signal.SIGTERM) == 0
+    assert 'Traceback' not in planner.log
+
+
+def test_transition_that_the_state_does_not_allow_is_refused_and_changes_nothing(
+    client: Client, planner: NodeProcess
+) -> None:
+    assert change(client, ACTIVATE) == [False]
+    assert state(client) == UNCONFIGURED
+    assert change(client, CONFIGURE, ACTIVATE) == [True, True]
+    assert change(client, CONFIGURE, ACTIVATE, CLEANUP) == [False, False, False]
+    assert state(client) == ACTIVE
+    assert change(client, DEACTIVATE, DEACTIVATE) == [True, False]
+    unknown = ChangeState.Request(transition=Transition(label='fly'))
+    assert not client.call(ChangeState, '/hnr_planner/change_state', unknown).success
+    assert state(client) == INACTIVE
+    assert 'no transition 1 from active' in planner.log
+    assert planner.popen.poll() is None and 'Traceback' not in planner.log
+
+
+def test_deactivation_ends_searches(client: Client, planner: NodeProcess) -> None:
+    change(client, CONFIGURE, ACTIVATE)
+    client.set_parameters(time_limit=60.0)
+    client.publish_map(grid_message(maze()))
+    planner.wait_for('map received')
+    futures = [client.send_plan(pose(0.025, 0.025), pose(20, 20)) for _ in range(3)]
+    client.wait_for_running(len(futures))
+    assert change(client, DEACTIVATE) == [True]
+    for future in futures:
+        path = result_of(future).plan
+        assert path.poses == []
+        assert client.outcome_of(path)[0] is Outcome.CANCELLED
+    assert outcome(client) is Outcome.NOT_ACTIVE
+
+
+def test_bond_lives_while_the_node_is_active(client: Client, planner: NodeProcess) -> None:
+    if find_spec('bondpy') is None:
+        change(client, CONFIGURE, ACTIVATE)
+        planner.wait_for('bond_timeout')
+        return
+    from bond.msg import Status
+    from bondpy.bondpy import Bond
+
+    heard = client.listen(Status, '/bond', MANY)
+    change(client, CONFIGURE)
+    for end in ((DEACTIVATE,), ()):
+        manager = Client()
+        bond = Bond(manager.node, '/bond', 'hnr_planner')
+        bond.heartbeat_timeout = 120.0
+        bond.start()
+        assert change(client, ACTIVATE) == [True]
+        assert bond.wait_until_formed(Duration(seconds=20))
+        assert any(message.active and message.instance_id != bond.instance_id for message in heard)
+        if end:
+            assert change(client, *end) == [True]
+        else:
+            assert planner.end(signal.SIGTERM) == 0
+        assert bond.wait_until_broken(Duration(seconds=20)), 'told, not missed'
+        manager.close()
+    assert 'Traceback' not in planner.log, planner.log
+
+
+def test_parameters_change_in_every_state(client: Client) -> None:
+    for transition in (CONFIGURE, ACTIVATE, DEACTIVATE, CLEANUP, SHUTDOWN[UNCONFIGURED]):
+        (answer,) = client.set_parameters(robot_radius=0.01 * transition)
+        assert answer.successful, answer.reason
+        assert change(client, transition) == [True]
+    assert client.get_parameters('robot_radius') == [0.01 * SHUTDOWN[UNCONFIGURED]]
+
+
+def test_node_survives_many_changes_while_requests_come(
+    client: Client, planner: NodeProcess
+) -> None:
+    """Subscriptions come and go under the executor's eyes; every request is answered by name."""
+    client.publish_map(grid_message(two_rooms()))
+    change(client, CONFIGURE, ACTIVATE)
+    planner.wait_for('map received')
+    known = {Outcome.SOLVED, Outcome.NOT_ACTIVE, Outcome.NO_MAP, Outcome.MAP_NOT_READY}
+    futures = []
+    for turn in range(20):
+        futures += [client.send_plan(START, GOAL) for _ in range(5)]
+        client.set_parameters(rviz_clicks=bool(turn % 2))
+        assert all(change(client, DEACTIVATE, CLEANUP, CONFIGURE, ACTIVATE))
+    outcomes = {client.outcome_of(result_of(future).plan)[0] for future in futures}
+    assert outcomes <= known | {Outcome.CANCELLED}
+    until(lambda: outcome(client) is Outcome.SOLVED, 'the map again')
+    assert 'Traceback' not in planner.log and planner.popen.poll() is None
+
+
+FAILING = """
+import rclpy
+from hnr_planner.ros.managed_node import ManagedNode
+
+
+class Failing(ManagedNode):
+    held = 0
+
+    def configure(self):
+        self.held += 1
+
+    def activate(self):
+        raise ValueError('no power')
+
+    def cleanup(self):
+        self.held = 0
+
+
+rclpy.init()
+node = Failing('failing')
+said = [node.trigger_configure().name, node.state, node.held]
+said += [node.trigger_activate().name, node.state, node.held]
+said += [node.trigger_configure().name, node.state, node.held]
+node.destroy_node()
+print(said, node.state, node.held)
+rclpy.try_shutdown()
+"""
+
+
+def test_transition_that_fails_is_told_and_undone() -> None:
+    done = subprocess.run(
+        [sys.executable, '-c', FAILING], capture_output=True, text=True, timeout=60, check=False
+    )
+    assert done.returncode == 0, done.stderr
+    steps = ['SUCCESS', INACTIVE, 1, 'ERROR', UNCONFIGURED, 0, 'SUCCESS', INACTIVE, 1]
+    assert done.stdout.strip() == f'{steps} {FINALIZED} 0'
+    assert 'ValueError: no power' in done.stderr
+
+
+@pytest.mark.parametrize('where', WAY_TO)
+@pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])
+def test_signal_in_every_state_is_a_clean_end(
+    client: Client, planner: NodeProcess, where: str, number: signal.Signals
+) -> None:
+    change(client, *WAY_TO[where])
+    assert state(client) == where
+    assert planner.end(number) == 0, planner.log
+    for word in ('Traceback', 'ERROR', 'xception', 'ignored'):
+        assert word not in planner.log, planner.log
