@@ -14,6 +14,7 @@ import os
 from pathlib import Path
 import time
 
+from benchmarks.clearance import clearance
 from benchmarks.competitors import Competitor, lineup
 from benchmarks.every_problem import every_problem
 from benchmarks.first_path import first_path
@@ -23,6 +24,7 @@ from benchmarks.progress import say
 from benchmarks.properties import properties
 from benchmarks.race import FULL, QUICK, race, Standing
 from benchmarks.report import missing_words, report
+from benchmarks.roadmap import roadmap
 from benchmarks.sections import Bench, SectionOf, verdict_table
 from benchmarks.short_path import short_path
 from benchmarks.success import success
@@ -31,7 +33,15 @@ from hnr_planner.core import warm_up
 ROOT = Path(__file__).resolve().parents[1]
 
 #: The report, in this order.
-SECTIONS: tuple[SectionOf, ...] = (first_path, short_path, success, properties, every_problem)
+SECTIONS: tuple[SectionOf, ...] = (
+    first_path,
+    short_path,
+    success,
+    roadmap,
+    clearance,
+    properties,
+    every_problem,
+)
 
 
 def main() -> None:

@@ -1,23 +1,19 @@
-"""
-What distance from walls costs: ``python -m benchmarks.clearance`` writes ``clearance.md``.
-
-HNR_MAPS names a folder of further maps.
-"""
+"""What distance from walls costs: length against least and mean clearance."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from pathlib import Path
 import time
 from typing import NamedTuple
 
-from benchmarks.problems import Floats, Problem, problems
-from hnr_planner.core import GridSpace, plan, warm_up
+from benchmarks.problems import Floats, Problem
+from benchmarks.progress import show
+from benchmarks.sections import Bench, Section, table
+from hnr_planner.core import GridSpace, plan
 import numpy as np
 
 #: Clearances [m], and seeds that each request is answered with.
 CLEARANCES, SEEDS = (0.0, 0.1, 0.25, 0.5, 1.0), 5
-RESULTS = Path(__file__).with_name('clearance.md')
 EXPLAINED = """\
 Each row is a mean over the same requests and seeds, with `plan(..., clearance=...)`: length over
 that of the path without clearance, the least and the mean distance to the occupied cells along the
@@ -75,28 +71,18 @@ def _points_along(path: Floats, spacing: float) -> Floats:
     return np.stack([np.interp(points, at, path[:, i]) for i in range(2)], axis=1)
 
 
-def clearance_table(measured: list[Trade]) -> str:
-    """Return the trades as a table in Markdown."""
-    rows = [
-        '| map | clearance | length | least | mean | kept | time |',
-        '| --- ' + '| ---: ' * 6 + '|',
-    ]
-    for row in measured:
+def clearance(bench: Bench) -> Section:
+    """Measure the trade on every map of a building."""
+    rows = []
+    for trade in trades([problem for problem in bench.problems if not problem.is_spiral]):
+        show(f'clearance {trade.clearance:g} m on {trade.problem}')
         rows.append(
-            f'| {row.problem} | {row.clearance:g} | {row.length:.3f} | {row.least:.3f} | '
-            f'{row.mean:.3f} | {row.kept:.3f} | {1e3 * row.seconds:.2f} |'
+            [
+                trade.problem,
+                f'{trade.clearance:g}',
+                *(f'{x:.3f}' for x in (trade.length, trade.least, trade.mean, trade.kept)),
+                f'{1e3 * trade.seconds:.2f}',
+            ]
         )
-    return '\n'.join(rows)
-
-
-def main() -> None:
-    """Measure, print and write."""
-    warm_up()
-    chosen = [problem for problem in problems(quick=False) if not problem.is_spiral]
-    table = clearance_table(list(trades(chosen)))
-    print(table)
-    RESULTS.write_text(f'# Length against clearance\n\n{EXPLAINED}\n{table}\n')
-
-
-if __name__ == '__main__':
-    main()
+    body = table('map | clearance | length | least | mean | kept | time', rows)
+    return Section('Length against clearance', f'{EXPLAINED}\n{body}')

@@ -1,21 +1,21 @@
 """
 Many requests on one map: what a roadmap costs to build and mend, and what its answers are worth.
 
-``python -m benchmarks.roadmap [--quick]`` measures it alone. A request is the whole call of
-``plan()`` from Python; lengths are ratios over the shortest path known, from long searches and
-from a roadmap of twice the draws. A map is mended after a block of twenty cells' side has come up
-in a free place, and again when it has gone.
+A request is the whole call of ``plan()`` from Python; lengths are ratios over the shortest path
+known, from long searches and from a roadmap of twice the draws. A map is mended after a block of
+twenty cells' side has come up in a free place, and again when it has gone.
 """
 
 from __future__ import annotations
 
-import argparse
 from collections.abc import Callable
 import time
 from typing import NamedTuple, TypeVar
 
-from benchmarks.problems import Floats, Problem, problems
-from hnr_planner.core import GridSpace, plan, Roadmap, warm_up
+from benchmarks.problems import Floats, Problem
+from benchmarks.progress import show
+from benchmarks.sections import Bench, on_all, Section, table
+from hnr_planner.core import GridSpace, plan, Roadmap
 import numpy as np
 
 #: Times that each request is asked; searches for the shortest path known.
@@ -24,6 +24,8 @@ SEARCHES, SEARCHES_QUICK = 100, 20
 #: Side of the block that comes and goes [cells].
 BLOCK = 20
 SEED = 0
+#: What is asked of a request: the median of its time [s] and of its length over the best known.
+REQUEST, LENGTH = 0.1e-3, 1.01
 
 Result = TypeVar('Result')
 
@@ -72,6 +74,32 @@ def measure(problem: Problem, searches: int) -> Row:
     )
 
 
+def roadmap(bench: Bench) -> Section:
+    """Measure a roadmap on every problem."""
+    Roadmap.build(GridSpace.from_blocked(np.zeros((3, 3), dtype=bool)), seed=0)
+    rows = []
+    for problem in bench.problems:
+        rows.append(measure(problem, SEARCHES_QUICK if bench.quick else SEARCHES))
+        show(f'roadmap of {problem.name}: built in {rows[-1].build:.1f} s')
+    slow = {
+        row.name: f'{1e6 * np.median(row.requests):.0f} us'
+        for row in rows
+        if np.median(row.requests) > REQUEST
+    }
+    long = {
+        row.name: f'{np.median(row.ratios):.3f}' for row in rows if np.median(row.ratios) > LENGTH
+    }
+    verdicts = [
+        on_all('a request with a roadmap, median', f'{1e6 * REQUEST:.0f} us', slow, len(rows)),
+        on_all('its length over the best known, median', f'{LENGTH:g}', long, len(rows)),
+    ]
+    head = (
+        'problem | nodes | build, s | block comes, s | block goes, s | request, us | p95 | length '
+        '| p95'
+    )
+    return Section('Many requests on one map', table(head, map(_row, rows)), verdicts)
+
+
 def _timed(work: Callable[[], Result]) -> tuple[Result, float]:
     began = time.perf_counter()
     result = work()
@@ -89,41 +117,14 @@ def _with_block(space: GridSpace) -> GridSpace:
     return GridSpace.from_blocked(blocked, space.resolution, space.origin)
 
 
-def table(rows: list[Row]) -> str:
-    """Write rows as a table in Markdown."""
-    lines = [
-        '| problem | nodes | build, s | block comes, s | block goes, s | request, us | p95 '
-        '| length | p95 |',
-        '| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |',
+def _row(row: Row) -> list[str]:
+    median, late = np.quantile(row.requests, (0.5, 0.95)) * 1e6
+    typical, long = np.quantile(row.ratios, (0.5, 0.95))
+    seconds = (row.build, row.block_comes, row.block_goes)
+    return [
+        row.name,
+        f'{row.nodes}',
+        *(f'{value:.2f}' for value in seconds),
+        *(f'{value:.0f}' for value in (median, late)),
+        *(f'{value:.4f}' for value in (typical, long)),
     ]
-    for row in rows:
-        median, late = np.quantile(row.requests, (0.5, 0.95)) * 1e6
-        typical, long = np.quantile(row.ratios, (0.5, 0.95))
-        lines.append(
-            f'| {row.name} | {row.nodes} | {row.build:.2f} | {row.block_comes:.2f} '
-            f'| {row.block_goes:.2f} | {median:.0f} | {late:.0f} | {typical:.4f} | {long:.4f} |'
-        )
-    return '\n'.join(lines)
-
-
-def measure_all(quick: bool) -> list[Row]:
-    """Measure all problems, or few of them for a quick look."""
-    rows = []
-    for problem in problems(quick):
-        rows.append(measure(problem, SEARCHES_QUICK if quick else SEARCHES))
-        print(table(rows[-1:]).splitlines()[-1], flush=True)
-    return rows
-
-
-def main() -> None:
-    """Measure and print."""
-    parser = argparse.ArgumentParser(prog='python -m benchmarks.roadmap', description=__doc__)
-    parser.add_argument('--quick', action='store_true', help='two maps and two spirals')
-    quick = parser.parse_args().quick
-    warm_up()
-    Roadmap.build(GridSpace.from_blocked(np.zeros((3, 3), dtype=bool)), seed=0)
-    print(f'\n{table(measure_all(quick))}')
-
-
-if __name__ == '__main__':
-    main()

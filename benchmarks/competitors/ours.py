@@ -18,7 +18,7 @@ import numpy as np
 #: A wavefront's time on a small map is no time to optimize in [s].
 LEAST_TIME = 1e-3
 #: Runs that tell how long a wavefront takes, and the part of its time that is used.
-CALIBRATION, USED = 40, 0.95
+CALIBRATION, USED = 40, 0.9
 
 
 def ours() -> list[Competitor]:

@@ -86,8 +86,8 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
         type=length,
         default=0.0,
         metavar='S',
-        help='once there is a path, look for a shorter one for this long [s], ending with '
-        'the time limit; default 0',
+        help='look for a shorter path until so long [s] after the call, ending with the time '
+        'limit; default 0',
     )
     parser.add_argument(
         '--clearance',

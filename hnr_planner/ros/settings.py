@@ -88,7 +88,7 @@ class Settings:
     simplify: bool = _setting(True, 'Shorten the path that was found by visibility.')
     optimize_for: float = _setting(
         0.0,
-        'Time to go on and look for a shorter path, inside time_limit.',
+        'A shorter path is looked for until so long after the request, inside time_limit.',
         's',
         lower=0.0,
         upper=3600.0,

@@ -153,13 +153,9 @@ def test_rrt():
 
 def test_hit_and_run_connect():
     outcomes = []
-    for plant, grow in (
-        (connect._plant, connect._grow),
-        (interpreted(connect._plant), interpreted(connect._grow)),
-    ):
-        trees, n_roots = plant(PROBLEM)
+    for begin in (connect._begin, interpreted(connect._begin)):
         with np.errstate(over='ignore'):
-            done = grow(PROBLEM, trees, stream(5), 0, connect.FIRST_ROWS - n_roots)
+            trees, _, done = begin(PROBLEM, stream(5), 120)
         rows = int(trees.sizes.sum())
         assert rows > 10
         outcomes.append([done[0], done[1:], trees.vertices[:rows], trees.parents[:rows]])

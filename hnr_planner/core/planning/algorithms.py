@@ -20,6 +20,10 @@ _PLANNERS: dict[str, type[Any]] = {kind.name: kind for kind in _KINDS}
 #: Names that ``plan`` takes.
 ALGORITHMS = ('auto', *_PLANNERS)
 
+_DEFAULTS: dict[str, Planner] = {
+    name: _PLANNERS[BEST if name == 'auto' else name]() for name in ALGORITHMS
+}
+
 
 def make_planner(algorithm: str | Planner, settings: dict[str, Any]) -> Planner:
     """
@@ -38,6 +42,8 @@ def make_planner(algorithm: str | Planner, settings: dict[str, Any]) -> Planner:
             raise RequestError(f'settings {sorted(settings)} go with the name of a planner only')
         return algorithm
     name = check_choice('algorithm', algorithm, ALGORITHMS)
+    if not settings:
+        return _DEFAULTS[name]
     kind = _PLANNERS[BEST if name == 'auto' else name]
     known = [field.name for field in fields(kind)]
     for setting in settings:

@@ -30,6 +30,7 @@ from hnr_planner.core.planning.limits import Limits
 from hnr_planner.core.planning.request import Request
 from hnr_planner.core.planning.result import PlannerStatus, PlanResult
 from hnr_planner.core.planning.rrt import draw_in_box
+from hnr_planner.core.planning.search import compile_search
 from hnr_planner.core.planning.simplify import compile_shorten, shorten, skip_vertices
 from hnr_planner.core.planning.stand_off import compile_stand_off, stand_off
 from hnr_planner.core.spaces.primitives import component
@@ -179,4 +180,4 @@ def compile_alternatives(request: Request) -> None:
     signature(islands, ends)
     is_simple(ends)
     _draw_points(request.problem, request.stream(0), ends[:0])
-    HitAndRunConnect().start(request.problem, request.stream(0)).advance(0)
+    compile_search(HitAndRunConnect(), request.problem)

@@ -116,6 +116,8 @@ def _in_caller_s_frame(request: Request, points: Floats) -> Floats:
 
 def _over_rough_path(request: Request, best: Attempt, limits: Limits) -> Attempt:
     """Return the attempt with the path over the space's own rough one, where that is better."""
+    if limits.stop() is not None:
+        return best
     rough = request.space.rough_path(request.problem.start, request.problem.goal)
     if rough is None:
         return best

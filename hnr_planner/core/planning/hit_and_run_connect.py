@@ -32,8 +32,6 @@ from numpy.typing import NDArray
 #: behind it at least: the best of 1 to 6 and of 0 to .9 on building maps and spirals.
 RAYS = 4
 INNER = 0.7
-#: Vertices that the table has room for at first.
-FIRST_ROWS = 128
 
 
 class Trees(NamedTuple):
@@ -95,14 +93,14 @@ class HitAndRunConnectSearch(TwoTreeSearch):
     """Two trees under way; a transition is one step of one of them, in turn."""
 
     _redraws: int = field(init=False, default=0)
-    _trees: Trees = field(init=False)
-    _n_roots: int = field(init=False)
-
-    def __post_init__(self) -> None:
-        self._trees, self._n_roots = _plant(self.problem)
+    #: Planted with the first steps: one call of compiled code is worth two of Python's.
+    _trees: Trees | None = field(init=False, default=None)
+    _n_roots: int = field(init=False, default=0)
 
     @property
     def _table(self) -> tuple[Floats, NDArray[np.int64]]:
+        if self._trees is None:
+            return self.problem.start[np.newaxis], np.array([NONE])
         rows = self._n_roots + self.iterations
         return self._trees.vertices[:rows], self._trees.parents[:rows]
 
@@ -115,30 +113,42 @@ class HitAndRunConnectSearch(TwoTreeSearch):
         """Take at most ``n_iterations`` further steps."""
         if self.solved:
             return
-        self._make_room(self._n_roots + self.iterations + n_iterations)
-        self._ends, taken, redraws = _grow(
-            self.problem, self._trees, self.rng, self.iterations, n_iterations
-        )
+        if self._trees is None:
+            self._trees, self._n_roots, grown = _begin(self.problem, self.rng, n_iterations)
+        else:
+            rows = self._n_roots + self.iterations + n_iterations
+            self._trees = _roomy(self._trees, rows)
+            grown = _grow(self.problem, self._trees, self.rng, self.iterations, n_iterations)
+        self._ends, taken, redraws = grown
         self.iterations += taken
         self._redraws += redraws
 
-    def _make_room(self, rows: int) -> None:
-        trees = self._trees
-        if len(trees.parents) < rows:
-            self._trees = trees._replace(
-                vertices=with_room(trees.vertices, rows),
-                parents=with_room(trees.parents, rows),
-                members=with_room(trees.members, rows),
-            )
+
+def _roomy(trees: Trees, rows: int) -> Trees:
+    """Return the trees with room for so many rows at least."""
+    if len(trees.parents) >= rows:
+        return trees
+    return trees._replace(
+        vertices=with_room(trees.vertices, rows),
+        parents=with_room(trees.parents, rows),
+        members=with_room(trees.members, rows),
+    )
 
 
 @kernel
-def _plant(problem):
+def _begin(problem, rng, n_iterations):
+    """Plant the trees and take their first steps: (trees, roots, what ``_grow`` returns)."""
+    trees, n_roots = _plant(problem, 2 + n_iterations)
+    return trees, n_roots, _grow(problem, trees, rng, 0, n_iterations)
+
+
+@kernel
+def _plant(problem, rows):
     """Plant a root at the start, and one at a goal that it can reach: (trees, roots)."""
     trees = Trees(
-        np.empty((FIRST_ROWS, len(problem.start))),
-        np.empty(FIRST_ROWS, dtype=np.int64),
-        np.empty((FIRST_ROWS, 2), dtype=np.int64),
+        np.empty((rows, len(problem.start))),
+        np.empty(rows, dtype=np.int64),
+        np.empty((rows, 2), dtype=np.int64),
         np.zeros(2, dtype=np.int64),
         empty_frontier(problem.lower, problem.upper, problem.clearance),
         np.empty((2, len(problem.start))),

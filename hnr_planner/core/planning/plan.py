@@ -25,7 +25,7 @@ from hnr_planner.core.planning.result import (
     PlannerStatus,
     PlanResult,
 )
-from hnr_planner.core.planning.search import Planner
+from hnr_planner.core.planning.search import compile_search, Planner
 from hnr_planner.core.planning.simplify import compile_shorten
 from hnr_planner.core.planning.stand_off import compile_stand_off
 from hnr_planner.core.spaces.space import Space
@@ -74,8 +74,8 @@ def plan(
     simplify : bool
         Whether the path is shortened by visibility.
     optimize_for : float
-        Seconds, within the time limit, to search again and again for a shorter path; a straight
-        one ends it.
+        For so many seconds of the call, within the time limit, a shorter path is looked for again
+        and again; a straight one ends it.
     optimize_iterations : int
         How many more searches to run for a shorter path; together with ``optimize_for`` whichever
         ends first.
@@ -128,7 +128,7 @@ def _answer_by_search(
     best = attempt(request, 0, limits, began)
     first, iterations = best.first, best.search.iterations
     if first is not None and (improve_seconds or improve_searches):
-        until = time.perf_counter() + (improve_seconds or math.inf)
+        until = began + (improve_seconds or math.inf)
         improving = replace(limits, deadline=min(limits.deadline, until))
         best, iterations = improve(request, best, improve_searches or math.inf, improving, began)
         limits.cut = limits.cut or improving.cut
@@ -197,12 +197,12 @@ def _compile(request: Request, n_paths: int) -> None:
     kinds = type(space.data), type(request.planner), n_paths > 1, request.clearance > 0.0
     if kinds in _compiled:
         return
-    search = request.planner.start(request.problem, request.stream())
-    search.advance(0)
+    compile_search(request.planner, request.problem)
     without_search(request)
     ends = np.stack([request.start, request.goal])
     compile_shorten(space, ends)
     space.first_blocked_segment(ends)
+    space.rough_path(request.problem.start, request.problem.start)
     if n_paths > 1:
         compile_alternatives(request)
     if request.clearance > 0.0:

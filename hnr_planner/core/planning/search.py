@@ -12,7 +12,7 @@ from typing import Any, NamedTuple, Protocol
 from hnr_planner.core.checks import Floats
 from hnr_planner.core.kernels import kernel
 from hnr_planner.core.spaces.primitives import sees
-from hnr_planner.core.streams import Stream
+from hnr_planner.core.streams import Stream, stream
 import numpy as np
 from numpy.typing import NDArray
 
@@ -109,6 +109,13 @@ class Planner(Protocol):
 
     def start(self, problem: Problem, rng: Stream) -> Search:
         """Start a search."""
+
+
+def compile_search(planner: Planner, problem: Problem) -> None:
+    """Compile what searches of a planner run, both the first steps and later ones."""
+    search = planner.start(problem, stream(0))
+    for _ in range(2):
+        search.advance(0)
 
 
 @kernel

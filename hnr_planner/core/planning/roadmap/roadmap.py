@@ -19,7 +19,7 @@ from hnr_planner.core.planning.hit_and_run_connect import HitAndRunConnect
 from hnr_planner.core.planning.limits import Event
 from hnr_planner.core.planning.roadmap.exits import nodes_seen, way_to_node
 from hnr_planner.core.planning.roadmap.learning import Knowledge, learn, N_DRAWS, nothing_known
-from hnr_planner.core.planning.search import NONE, Problem, Search
+from hnr_planner.core.planning.search import compile_search, NONE, Problem, Search
 from hnr_planner.core.spaces.primitives import sees
 from hnr_planner.core.spaces.space import Space
 from hnr_planner.core.streams import Stream, stream
@@ -190,7 +190,7 @@ def _compile(space: Space) -> None:
         clearance=space.typical_clearance,
         scale=space.scale,
     )
-    HitAndRunConnect().start(problem, rng).advance(0)
+    compile_search(HitAndRunConnect(), problem)
 
 
 def _same_frame(a: Space, b: Space) -> bool:
