@@ -8,12 +8,14 @@ HNR_MAPS names a folder of further maps. The full run writes ``benchmarks/result
 from __future__ import annotations
 
 import argparse
+from itertools import chain
 import os
 from pathlib import Path
 import sys
 import time
 
 from benchmarks import ompl
+from benchmarks.answers import answers
 from benchmarks.competitors import competitors
 from benchmarks.picture import draw
 from benchmarks.problems import problems
@@ -79,7 +81,7 @@ def _race(quick: bool, with_ompl: bool) -> list[Standing]:
 
 def _measure(quick: bool) -> list[Property]:
     measured = []
-    for row in properties(quick):
+    for row in chain(properties(quick), answers(20 if quick else 200)):
         print(f'{row.what}: {row.measured}')
         measured.append(row)
     return measured

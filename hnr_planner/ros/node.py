@@ -12,8 +12,8 @@ from hnr_planner.ros.map_subscription import MapSubscription
 from hnr_planner.ros.outcome_messages import health_message
 from hnr_planner.ros.outcomes import Outcome, Refusal
 from hnr_planner.ros.parameters import Parameters
-from hnr_planner.ros.path_messages import path_message, request_from_message
-from hnr_planner.ros.publications import Publications
+from hnr_planner.ros.path_messages import path_message, pose_rows, request_from_message
+from hnr_planner.ros.publications import Publications, Result
 from hnr_planner.ros.requests import answer, Report, Request
 from hnr_planner.ros.searches import RunningSearches
 from hnr_planner.ros.settings import Settings
@@ -24,6 +24,7 @@ from rclpy.callback_groups import MutuallyExclusiveCallbackGroup, ReentrantCallb
 from rclpy.clock import Clock, ClockType
 from rclpy.node import Node
 from rclpy.qos import QoSProfile
+from std_msgs.msg import Header
 from std_srvs.srv import Trigger
 
 MOST_SEARCHES = 32
@@ -56,7 +57,7 @@ class PlannerNode(Node):
             callback_group=MutuallyExclusiveCallbackGroup(),
             clock=Clock(clock_type=ClockType.STEADY_TIME),
         )
-        searches = BoundedCallbackGroup(MOST_SEARCHES)
+        searches = BoundedCallbackGroup(MOST_SEARCHES, self._publications.answer_sent)
         for name, algorithm in SERVICES.items():
             self.create_service(
                 GetPlan,
@@ -96,10 +97,10 @@ class PlannerNode(Node):
         request = request_from_message(message, algorithm or settings.algorithm)
         report = self._report(request, settings)
         self._statistics.count(report)
-        self._log(service, report)
-        response.plan = path_message(report, settings.pose_spacing)
-        name = f'{self.get_fully_qualified_name()}/{service}'
-        self._publications.hand_over(report, response.plan, name, settings.samples_max)
+        poses, header = pose_rows(report, settings.pose_spacing), Header(frame_id=report.frame)
+        response.plan = path_message(poses, header)
+        result = Result(report, poses, header, service, settings.samples_max)
+        self._publications.hand_over(result)
         return response
 
     def _report(self, request: Request, settings: Settings) -> Report:
@@ -111,18 +112,6 @@ class PlannerNode(Node):
             self.get_logger().error(f'a defect of the planner:\n{traceback.format_exc()}')
             why = f'a defect of the planner, please report it: {error!r}'
             return Report(Outcome.INTERNAL_ERROR, why, request, elapsed=0.0)
-
-    def _log(self, service: str, report: Report) -> None:
-        """Say in one line how a request ended."""
-        if report.request.omits_start:
-            self.get_logger().info(
-                f'{service}: the start is (0, 0) in no frame, as if left out: taken literally'
-            )
-        text = f'{service}: {report.outcome.name} after {report.elapsed:.3f} s: {report.why}'
-        if report.solved:
-            self.get_logger().info(text)
-        else:
-            self.get_logger().warning(text)
 
     def _cancel(self, _request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
         """End all running searches."""
