@@ -1,9 +1,11 @@
 """The subscription to `map`, which adapts to what the publisher offers."""
 
 from collections.abc import Callable
+import threading
 
 from nav_msgs.msg import OccupancyGrid
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
+from rclpy.clock import Clock, ClockType
 from rclpy.event_handler import QoSRequestedIncompatibleQoSInfo, SubscriptionEventCallbacks
 from rclpy.node import Node
 from rclpy.qos import (
@@ -17,6 +19,8 @@ from rclpy.qos import (
 from rclpy.subscription import Subscription
 
 TOPIC = 'map'
+LOOK_EVERY = 1.0
+"""Seconds between looks at whether the subscription can be as wished again."""
 
 
 class MapSubscription:
@@ -35,14 +39,29 @@ class MapSubscription:
         self._group = MutuallyExclusiveCallbackGroup()
         durability = DurabilityPolicy.TRANSIENT_LOCAL if transient_local else _VOLATILE
         self._wished = _profile(durability, ReliabilityPolicy.RELIABLE)
+        self._one_at_a_time = threading.Lock()
+        self._closed = False
         self._subscription = self._subscribe(self._wished)
+        self._timer = node.create_timer(
+            LOOK_EVERY,
+            self._go_back_if_possible,
+            callback_group=self._group,
+            clock=Clock(clock_type=ClockType.STEADY_TIME),
+        )
 
     @property
     def topic(self) -> str:
         """Return the full name of the topic."""
         return str(self._subscription.topic_name)
 
-    def go_back_if_possible(self) -> None:
+    def close(self) -> None:
+        """Listen no more."""
+        with self._one_at_a_time:
+            self._closed = True
+            self._node.destroy_timer(self._timer)
+            self._node.destroy_subscription(self._subscription)
+
+    def _go_back_if_possible(self) -> None:
         """Subscribe as wished again when all publishers that are there now allow it."""
         if self._subscription.qos_profile.durability == self._wished.durability and (
             self._subscription.qos_profile.reliability == self._wished.reliability
@@ -79,9 +98,11 @@ class MapSubscription:
         self._replace(lesser)
 
     def _replace(self, profile: QoSProfile) -> None:
-        old = self._subscription
-        self._subscription = self._subscribe(profile)
-        self._node.destroy_subscription(old)
+        with self._one_at_a_time:
+            if not self._closed:
+                old = self._subscription
+                self._subscription = self._subscribe(profile)
+                self._node.destroy_subscription(old)
 
     def _subscribe(self, profile: QoSProfile) -> Subscription:
         return self._node.create_subscription(

@@ -9,6 +9,7 @@ class Outcome(enum.Enum):
     """How a request ended; those that the planner itself decides bear its status' name."""
 
     SOLVED = enum.auto()
+    NOT_ACTIVE = enum.auto()
     NO_MAP = enum.auto()
     MAP_NOT_READY = enum.auto()
     MAP_CHANGED = enum.auto()

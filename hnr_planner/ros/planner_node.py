@@ -23,10 +23,12 @@ def main() -> NoReturn:
 
     def make_node() -> PlannerNode:
         node = PlannerNode()
+        if node.settings.autostart:
+            node.trigger_configure()
+            node.trigger_activate()
         services = ', '.join(node.resolve_service_name(f'~/{name}') for name in SERVICES)
         node.get_logger().info(
-            f'ready after {time.monotonic() - began:.1f} s: {services}; '
-            f'maps come from {node.map_topic}'
+            f'ready after {time.monotonic() - began:.1f} s, {node.state}: {services}'
         )
         return node
 

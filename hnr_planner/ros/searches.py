@@ -1,8 +1,12 @@
-"""The searches that are running, so that all of them can be told to end."""
+"""The searches that are running, let in while the node is active."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
 import threading
+
+from hnr_planner.ros.outcomes import Outcome, Refusal
+
+WHY_DISABLED = 'the node is not active: configure and activate it, or start it with autostart true'
 
 
 class RunningSearches:
@@ -11,21 +15,32 @@ class RunningSearches:
     def __init__(self) -> None:
         self._events: set[threading.Event] = set()
         self._lock = threading.Lock()
-        self._closed = False
+        self._enabled = False
 
     @contextmanager
-    def one(self) -> Iterator[threading.Event]:
-        """Register a search for the length of a `with` block; its event tells it to end."""
-        event = threading.Event()
+    def one(self, cancel: threading.Event) -> Iterator[None]:
+        """
+        Register a search for the length of a `with` block; `cancel` tells it to end.
+
+        Raises
+        ------
+        Refusal
+            NOT_ACTIVE, when no searches are let in.
+
+        """
         with self._lock:
-            self._events.add(event)
-            if self._closed:
-                event.set()
+            self.check_enabled()
+            self._events.add(cancel)
         try:
-            yield event
+            yield
         finally:
             with self._lock:
-                self._events.discard(event)
+                self._events.discard(cancel)
+
+    def check_enabled(self) -> None:
+        """Raise Refusal (NOT_ACTIVE) when no searches are let in."""
+        if not self._enabled:
+            raise Refusal(Outcome.NOT_ACTIVE, WHY_DISABLED)
 
     def __len__(self) -> int:
         """Return how many are running."""
@@ -38,8 +53,13 @@ class RunningSearches:
                 event.set()
             return len(self._events)
 
-    def close(self) -> None:
-        """Tell all running searches to end, and every later one at its start."""
+    def enable(self) -> None:
+        """Let searches in."""
         with self._lock:
-            self._closed = True
+            self._enabled = True
+
+    def disable(self) -> None:
+        """Let no more searches in, and tell those that run to end."""
+        with self._lock:
+            self._enabled = False
         self.cancel()

@@ -110,6 +110,12 @@ class Settings:
     samples_max: int = _setting(
         100_000, 'Most samples in ~/samples for one request.', lower=0, upper=10_000_000
     )
+    autostart: bool = _setting(
+        True,
+        'Whether the node configures and activates itself; false: the transitions come from '
+        'outside, as from the lifecycle manager of Nav2. Read only: set it when the node starts.',
+        read_only=True,
+    )
     map_subscribe_transient_local: bool = _setting(
         True,
         'Ask for a latched map (as map_server offers it). Read only: set it when the node starts.',

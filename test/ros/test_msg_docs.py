@@ -55,8 +55,10 @@ def documented(node: str) -> set[tuple[str, str, str]]:
                 entry[cells[0]] = cells[1]
             if cells[0] == 'type' and entry['kind'].endswith(node):
                 found.add((_kind(entry['kind']), _full(entry['name'], node), entry['type']))
-            if len(cells) == 3 and cells[0] in ('service', 'topic, published'):
-                found.add((_kind(cells[0]), _full(cells[1], node), cells[2]))
+            if len(cells) == 3 and cells[0].startswith(('service', 'topic, published')):
+                # A row that names no node is true of each.
+                if cells[0].partition('`')[2] in ('', node):
+                    found.add((_kind(cells[0]), _full(cells[1], node), cells[2]))
     return found
 
 

@@ -1,0 +1,100 @@
+"""The way of a request through the node, whoever sends it: gate, plan, count, tell, publish."""
+
+from collections.abc import Callable
+import threading
+import traceback
+from typing import NamedTuple
+
+from hnr_planner.ros.outcomes import Outcome, Refusal
+from hnr_planner.ros.path_messages import path_message, pose_rows
+from hnr_planner.ros.publications import Publications, Result
+from hnr_planner.ros.requests import answer, NewestMap, Report, Request
+from hnr_planner.ros.searches import RunningSearches
+from hnr_planner.ros.settings import Settings
+from hnr_planner.ros.statistics import Statistics
+from nav_msgs.msg import Path
+from rclpy.node import Node
+from std_msgs.msg import Header
+
+
+class Answer(NamedTuple):
+    """What came of a request, and its path as a message: stamped, empty after a failure."""
+
+    report: Report
+    path: Path
+
+
+class PlanServer:
+    """
+    Answers requests for a path; any number of threads may ask at once.
+
+    Parameters
+    ----------
+    node : Node
+        Whose log and topics are used.
+    settings : callable
+        Returns the parameters in force.
+    newest_map : callable
+        Returns the map in use, or raises Refusal.
+
+    """
+
+    def __init__(
+        self, node: Node, settings: Callable[[], Settings], newest_map: NewestMap
+    ) -> None:
+        self._node = node
+        self._settings = settings
+        self._newest_map = newest_map
+        self._publications = Publications(node)
+        self.searches = RunningSearches()
+        self.statistics = Statistics()
+
+    def answer(
+        self, caller: str, request: Request, cancel: threading.Event | None = None
+    ) -> Answer:
+        """
+        Return the answer to `request`; all about it is published soon.
+
+        Parameters
+        ----------
+        caller : str
+            Service, action or topic that the request came by.
+        request : Request
+            What is asked for.
+        cancel : threading.Event, optional
+            Ends this search when it is set.
+
+        """
+        settings = self._settings()
+        report = self._report(request, settings, cancel or threading.Event())
+        self.statistics.count(report)
+        poses, header = pose_rows(report, settings.pose_spacing), Header(frame_id=report.frame)
+        path = path_message(poses, header)
+        result = Result(report, poses, header, caller, settings.samples_max)
+        self._publications.hand_over(result)
+        return Answer(report, path)
+
+    def answer_sent(self) -> None:
+        """Say that the answer that this thread got last is on its way to whoever asked."""
+        self._publications.answer_sent()
+
+    def end(self) -> None:
+        """Let no more searches in, end those that run, and publish no more pictures."""
+        self._publications.leave_out_pictures()
+        self.searches.disable()
+
+    def close(self) -> None:
+        """Publish the last results."""
+        self._publications.close()
+
+    def _report(self, request: Request, settings: Settings, cancel: threading.Event) -> Report:
+        """Return the answer to `request`, even if the planner has a defect."""
+        try:
+            with self.searches.one(cancel):
+                return answer(request, settings, self._newest_map, cancel)
+        except Refusal as refusal:
+            return Report(refusal.outcome, refusal.why, request, elapsed=0.0)
+        except Exception as error:  # without an answer the caller would wait for ever
+            self._node.get_logger().error(f'a defect of the planner:\n{traceback.format_exc()}')
+            why = f'a defect of the planner, please report it: {error!r}'
+            return Report(Outcome.INTERNAL_ERROR, why, request, elapsed=0.0)

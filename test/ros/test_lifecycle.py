@@ -1,0 +1,182 @@
+"""The life of the node: every state, every transition, and what is answered in each."""
+
+from collections.abc import Iterator
+from pathlib import Path
+import signal
+from test.ros.harness import (
+    Client,
+    grid_message,
+    MANY,
+    maze,
+    node_process,
+    NodeProcess,
+    pose,
+    result_of,
+    two_rooms,
+    until,
+)
+
+from diagnostic_msgs.msg import DiagnosticArray
+from hnr_planner.ros.outcomes import Outcome
+from lifecycle_msgs.msg import Transition
+from lifecycle_msgs.srv import ChangeState, GetState
+import pytest
+
+START, GOAL = pose(0.5, 0.6), pose(4.5, 0.7)
+UNCONFIGURED, INACTIVE, ACTIVE, FINALIZED = 'unconfigured', 'inactive', 'active', 'finalized'
+CONFIGURE, CLEANUP = Transition.TRANSITION_CONFIGURE, Transition.TRANSITION_CLEANUP
+ACTIVATE, DEACTIVATE = Transition.TRANSITION_ACTIVATE, Transition.TRANSITION_DEACTIVATE
+SHUTDOWN = {
+    UNCONFIGURED: Transition.TRANSITION_UNCONFIGURED_SHUTDOWN,
+    INACTIVE: Transition.TRANSITION_INACTIVE_SHUTDOWN,
+    ACTIVE: Transition.TRANSITION_ACTIVE_SHUTDOWN,
+}
+WAY_TO = {
+    UNCONFIGURED: (),
+    INACTIVE: (CONFIGURE,),
+    ACTIVE: (CONFIGURE, ACTIVATE),
+    FINALIZED: (SHUTDOWN[UNCONFIGURED],),
+}
+"""Transitions that lead to each state from the first one."""
+
+
+@pytest.fixture
+def planner(tmp_path: Path) -> Iterator[NodeProcess]:
+    """Run a planning node that waits for transitions from outside."""
+    with node_process('planner_node', tmp_path / 'log', autostart=False) as process:
+        yield process
+
+
+@pytest.fixture
+def client(planner: NodeProcess) -> Iterator[Client]:
+    """Return a client of that node."""
+    client = Client()
+    yield client
+    client.close()
+
+
+def change(client: Client, *transitions: int) -> list[bool]:
+    """Ask for transitions, one after the other; return whether each was made."""
+    return [
+        client.call(
+            ChangeState,
+            '/hnr_planner/change_state',
+            ChangeState.Request(transition=Transition(id=transition)),
+        ).success
+        for transition in transitions
+    ]
+
+
+def state(client: Client) -> str:
+    """Return the name of the node's state."""
+    answer = client.call(GetState, '/hnr_planner/get_state', GetState.Request())
+    return answer.current_state.label
+
+
+def outcome(client: Client) -> Outcome:
+    """Ask for a path and return how that ended."""
+    return client.outcome_of(client.plan(START, GOAL))[0]
+
+
+def health(client: Client) -> str:
+    """Return what the node says of itself from now on."""
+    heard = client.listen(DiagnosticArray, '/diagnostics', MANY)
+    return until(lambda: heard, 'a report of health')[0].status[0].message
+
+
+def test_node_starts_itself_by_default(tmp_path: Path) -> None:
+    with node_process('planner_node', tmp_path / 'log'):
+        client = Client()
+        assert state(client) == ACTIVE
+        assert outcome(client) is Outcome.NO_MAP
+        client.close()
+
+
+def test_every_state_answers_at_once_and_only_the_active_one_plans(
+    client: Client, planner: NodeProcess
+) -> None:
+    client.publish_map(grid_message(two_rooms()))
+    assert state(client) == UNCONFIGURED
+    assert outcome(client) is Outcome.NOT_ACTIVE
+    assert health(client).startswith('NOT_ACTIVE')
+
+    assert change(client, CONFIGURE) == [True]
+    assert state(client) == INACTIVE
+    planner.wait_for('map received')
+    assert outcome(client) is Outcome.NOT_ACTIVE
+
+    assert change(client, ACTIVATE) == [True]
+    assert state(client) == ACTIVE
+    assert outcome(client) is Outcome.SOLVED
+    assert health(client) == 'ready'
+
+    assert change(client, DEACTIVATE) == [True]
+    assert outcome(client) is Outcome.NOT_ACTIVE
+    assert change(client, ACTIVATE) == [True]
+    assert outcome(client) is Outcome.SOLVED, 'the map was kept'
+
+    assert change(client, DEACTIVATE, CLEANUP) == [True, True]
+    assert state(client) == UNCONFIGURED
+    assert outcome(client) is Outcome.NOT_ACTIVE
+
+    received = planner.log.count('map received')
+    assert change(client, CONFIGURE, ACTIVATE) == [True, True]
+    until(lambda: planner.log.count('map received') > received, 'the latched map again')
+    assert outcome(client) is Outcome.SOLVED
+
+    assert change(client, SHUTDOWN[ACTIVE]) == [True]
+    assert state(client) == FINALIZED
+    assert outcome(client) is Outcome.NOT_ACTIVE
+    assert planner.end(signal.SIGTERM) == 0
+    assert 'Traceback' not in planner.log
+
+
+def test_transition_that_the_state_does_not_allow_is_refused_and_changes_nothing(
+    client: Client, planner: NodeProcess
+) -> None:
+    assert change(client, ACTIVATE) == [False]
+    assert state(client) == UNCONFIGURED
+    assert change(client, CONFIGURE, ACTIVATE) == [True, True]
+    assert change(client, CONFIGURE, ACTIVATE, CLEANUP) == [False, False, False]
+    assert state(client) == ACTIVE
+    assert change(client, DEACTIVATE, DEACTIVATE) == [True, False]
+    unknown = ChangeState.Request(transition=Transition(label='fly'))
+    assert not client.call(ChangeState, '/hnr_planner/change_state', unknown).success
+    assert state(client) == INACTIVE
+    assert 'no transition 1 from active' in planner.log
+    assert planner.popen.poll() is None and 'Traceback' not in planner.log
+
+
+def test_deactivation_ends_searches(client: Client, planner: NodeProcess) -> None:
+    change(client, CONFIGURE, ACTIVATE)
+    client.set_parameters(time_limit=60.0)
+    client.publish_map(grid_message(maze()))
+    planner.wait_for('map received')
+    futures = [client.send_plan(pose(0.025, 0.025), pose(20, 20)) for _ in range(3)]
+    client.wait_for_running(len(futures))
+    assert change(client, DEACTIVATE) == [True]
+    for future in futures:
+        path = result_of(future).plan
+        assert path.poses == []
+        assert client.outcome_of(path)[0] is Outcome.CANCELLED
+    assert outcome(client) is Outcome.NOT_ACTIVE
+
+
+def test_parameters_change_in_every_state(client: Client) -> None:
+    for transition in (CONFIGURE, ACTIVATE, DEACTIVATE, CLEANUP, SHUTDOWN[UNCONFIGURED]):
+        (answer,) = client.set_parameters(robot_radius=0.01 * transition)
+        assert answer.successful, answer.reason
+        assert change(client, transition) == [True]
+    assert client.get_parameters('robot_radius') == [0.01 * SHUTDOWN[UNCONFIGURED]]
+
+
+@pytest.mark.parametrize('where', WAY_TO)
+@pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])
+def test_signal_in_every_state_is_a_clean_end(
+    client: Client, planner: NodeProcess, where: str, number: signal.Signals
+) -> None:
+    change(client, *WAY_TO[where])
+    assert state(client) == where
+    assert planner.end(number) == 0, planner.log
+    for word in ('Traceback', 'ERROR', 'xception', 'ignored'):
+        assert word not in planner.log, planner.log
