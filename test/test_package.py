@@ -91,7 +91,7 @@ def names(requirements: list[str]) -> set[str]:
 
 def is_ros(library: str) -> bool:
     of_messages = library.endswith(('_msgs', '_srvs', '_interfaces'))
-    return of_messages or library in ('rclpy', 'launch', 'launch_ros')
+    return of_messages or library in ('bondpy', 'launch', 'launch_ros', 'rclpy', 'tf2_ros')
 
 
 def installed(distribution: Any) -> Iterator[tuple[str, list[str]]]:

@@ -1,7 +1,9 @@
 """`nav_msgs/OccupancyGrid` to and from arrays, without a loop in Python."""
 
 import array
+from dataclasses import replace
 import math
+from typing import Any
 
 from builtin_interfaces.msg import Time
 from geometry_msgs.msg import Point, Pose, Quaternion
@@ -53,6 +55,41 @@ def grid_from_message(message: OccupancyGrid) -> Grid:
         )
     data = np.frombuffer(message.data, dtype=np.int8).reshape(info.height, info.width)
     return Grid(data, resolution, _origin(info.origin), message.header.frame_id)
+
+
+def updated(grid: Grid | None, message: Any) -> Grid:
+    """
+    Return `grid` with the part that a `map_msgs/OccupancyGridUpdate` brings; nothing is changed.
+
+    Raises
+    ------
+    MapError
+        When there is no map yet, or the part is not one of it; the message names the value.
+
+    """
+    if grid is None:
+        raise MapError('an update of a part came before the map')
+    rows, cols = grid.data.shape
+    x, y, width, height = message.x, message.y, message.width, message.height
+    if x < 0 or y < 0 or x + width > cols or y + height > rows:
+        raise MapError(
+            f'an update of {width} x {height} cells at column {x}, row {y} is not inside the map '
+            f'of {cols} x {rows} cells'
+        )
+    if len(message.data) != width * height:
+        raise MapError(
+            f'an update has {len(message.data)} values, but width {width} x height {height} is '
+            f'{width * height}'
+        )
+    if message.header.frame_id not in ('', grid.frame):
+        raise MapError(
+            f"an update is in frame '{message.header.frame_id}', the map in '{grid.frame}'"
+        )
+    data = grid.data.copy()
+    part = np.frombuffer(message.data, dtype=np.int8).reshape(height, width)
+    last_row, last_col = y + height, x + width
+    data[y:last_row, x:last_col] = part
+    return replace(grid, data=data)
 
 
 def _origin(pose: Pose) -> tuple[float, float, float]:

@@ -43,6 +43,15 @@ class Grid:
     origin: tuple[float, float, float]
     frame: str
 
+    def is_same_as(self, other: 'Grid | None') -> bool:
+        """Return whether another map says the same of every place."""
+        return (
+            other is not None
+            and (self.resolution, self.origin, self.frame)
+            == (other.resolution, other.origin, other.frame)
+            and np.array_equal(self.data, other.data)
+        )
+
     def __str__(self) -> str:
         """Return size, resolution and frame in words."""
         rows, cols = self.data.shape
@@ -78,6 +87,8 @@ class MapStore:
         """
         Put the map that `read_grid` returns to use and return it as a space.
 
+        One that is the same as the map in use is not prepared again.
+
         Raises
         ------
         MapError
@@ -89,6 +100,8 @@ class MapStore:
                 if self._snapshot is None:
                     self._missing = (Outcome.MAP_NOT_READY, 'a map is just being prepared')
                 grid = read_grid()
+                if self._snapshot is not None and grid.is_same_as(self._grid):
+                    return self._snapshot
                 self._snapshot = self._prepare(grid)
                 self._grid = grid
                 return self._snapshot
@@ -131,9 +144,14 @@ class MapStore:
             return self._snapshot
 
     @property
-    def in_use(self) -> bool:
-        """Return whether there is a map in use."""
-        return self._snapshot is not None
+    def snapshot(self) -> MapSnapshot | None:
+        """Return the map in use, if there is one."""
+        return self._snapshot
+
+    @property
+    def grid(self) -> Grid | None:
+        """Return the last good map, if there was one."""
+        return self._grid
 
     def newest(self) -> MapSnapshot:
         """Return the map in use, or raise Refusal (NO_MAP, MAP_NOT_READY)."""

@@ -4,7 +4,7 @@ from collections.abc import Callable
 import threading
 
 from nav_msgs.msg import OccupancyGrid
-from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
+from rclpy.callback_groups import CallbackGroup
 from rclpy.clock import Clock, ClockType
 from rclpy.event_handler import QoSRequestedIncompatibleQoSInfo, SubscriptionEventCallbacks
 from rclpy.node import Node
@@ -28,15 +28,20 @@ class MapSubscription:
     One subscription to the map, reliable and, if wished, transient local.
 
     A publisher that offers less is named in a warning, and the subscription is made anew with
-    what is offered; once every publisher offers what was wished, it goes back to that.
+    what is offered; once every publisher offers what was wished, it goes back to that. All this
+    happens in one callback group, whose callbacks exclude each other.
     """
 
     def __init__(
-        self, node: Node, receive: Callable[[OccupancyGrid], None], transient_local: bool
+        self,
+        node: Node,
+        receive: Callable[[OccupancyGrid], None],
+        transient_local: bool,
+        group: CallbackGroup,
     ) -> None:
         self._node = node
         self._receive = receive
-        self._group = MutuallyExclusiveCallbackGroup()
+        self._group = group
         durability = DurabilityPolicy.TRANSIENT_LOCAL if transient_local else _VOLATILE
         self._wished = _profile(durability, ReliabilityPolicy.RELIABLE)
         self._one_at_a_time = threading.Lock()

@@ -2,7 +2,10 @@
 
 from functools import partial
 
+from hnr_planner.ros.answer import only_same_frame
 from hnr_planner.ros.callback_group import BoundedCallbackGroup
+from hnr_planner.ros.clicks import Clicks
+from hnr_planner.ros.frames import Frames
 from hnr_planner.ros.health import Health
 from hnr_planner.ros.managed_node import ManagedNode
 from hnr_planner.ros.map_input import MapInput
@@ -11,6 +14,7 @@ from hnr_planner.ros.outcomes import Outcome, Refusal
 from hnr_planner.ros.parameters import Parameters
 from hnr_planner.ros.path_messages import request_from_message
 from hnr_planner.ros.plan_server import PlanServer
+from hnr_planner.ros.requests import Pose
 from hnr_planner.ros.settings import Settings
 from nav_msgs.srv import GetPlan
 from rclpy.callback_groups import ReentrantCallbackGroup
@@ -39,7 +43,10 @@ class PlannerNode(ManagedNode):
         super().__init__('hnr_planner')
         self._declared = Parameters(self, self._use_settings)
         self._map_input: MapInput | None = None
-        self._server = PlanServer(self, lambda: self.settings, self._newest_map)
+        self._frames: Frames | None = None
+        self._server = PlanServer(
+            self, lambda: self.settings, self._newest_map, self._to_frame_of_map
+        )
         self._health = Health(self, self._find_map_input, self._server)
         searches = BoundedCallbackGroup(MOST_SEARCHES, self._server.answer_sent)
         for name, algorithm in SERVICES.items():
@@ -53,6 +60,8 @@ class PlannerNode(ManagedNode):
         self.create_service(
             Trigger, '~/cancel', self._cancel, callback_group=ReentrantCallbackGroup()
         )
+        self._clicks = Clicks(self, self._server, lambda: self.settings, searches)
+        self._clicks.listen(self.settings.rviz_clicks)
 
     @property
     def settings(self) -> Settings:
@@ -60,8 +69,9 @@ class PlannerNode(ManagedNode):
         return self._declared.settings
 
     def configure(self) -> None:
-        """Begin to listen to maps."""
-        self._map_input = MapInput(self, self.settings)
+        """Begin to listen to maps and transforms."""
+        self._frames = Frames(self)
+        self._map_input = MapInput(self, self.settings, self._server.watch.look)
         self.get_logger().info(f'maps come from {self._map_input.topic}')
 
     def activate(self) -> None:
@@ -73,10 +83,12 @@ class PlannerNode(ManagedNode):
         self._server.searches.disable()
 
     def cleanup(self) -> None:
-        """Listen to maps no more, and forget the last."""
-        map_input, self._map_input = self._map_input, None
-        if map_input is not None:
-            map_input.close()
+        """Listen to maps and transforms no more, and forget what came."""
+        for listener in (self._map_input, self._frames):
+            if listener is not None:
+                listener.close()
+        self._map_input, self._frames = None, None
+        self._server.watch.forget()
 
     def end_searches(self) -> None:
         """Tell running searches, and those that may still come, to end."""
@@ -98,8 +110,16 @@ class PlannerNode(ManagedNode):
         """Return the map in use, or raise Refusal."""
         return self._find_map_input().newest()
 
+    def _to_frame_of_map(self, pose: Pose, frame: str) -> Pose:
+        """Return `pose` in the frame of the map, or raise Refusal (BAD_FRAME)."""
+        frames, settings = self._frames, self.settings
+        if frames is None:
+            return only_same_frame(pose, frame)
+        return frames.bring(pose, frame, min(settings.transform_tolerance, settings.time_limit))
+
     def _use_settings(self, settings: Settings) -> None:
         """Put changed parameters to use."""
+        self._clicks.listen(settings.rviz_clicks)
         if self._map_input is not None:
             self._map_input.use(settings)
 

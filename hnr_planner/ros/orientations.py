@@ -3,6 +3,8 @@
 import math
 
 Quaternion = tuple[float, float, float, float]
+Vector = tuple[float, float, float]
+LEVEL: Quaternion = (0.0, 0.0, 0.0, 1.0)
 
 
 def normalised(quaternion: Quaternion) -> Quaternion | None:
@@ -32,3 +34,21 @@ def tilt_of(quaternion: Quaternion) -> float:
 def quaternion_of(yaw: float) -> Quaternion:
     """Return the quaternion of a rotation by `yaw` about z."""
     return 0.0, 0.0, math.sin(yaw / 2.0), math.cos(yaw / 2.0)
+
+
+def product(first: Quaternion, second: Quaternion) -> Quaternion:
+    """Return the rotation by `second`, then by `first`."""
+    (ax, ay, az, aw), (bx, by, bz, bw) = first, second
+    return (
+        aw * bx + ax * bw + ay * bz - az * by,
+        aw * by - ax * bz + ay * bw + az * bx,
+        aw * bz + ax * by - ay * bx + az * bw,
+        aw * bw - ax * bx - ay * by - az * bz,
+    )
+
+
+def rotated(vector: Vector, rotation: Quaternion) -> Vector:
+    """Return `vector` turned by a normalised quaternion."""
+    x, y, z, w = rotation
+    turned = product(product(rotation, (*vector, 0.0)), (-x, -y, -z, w))
+    return turned[:3]

@@ -18,7 +18,10 @@ def outcome_values(report: Report) -> dict[str, str]:
         'elapsed': f'{report.elapsed:.6f}',
         'clearance': f'{report.clearance:.6g}',
         'offset': f'{report.offset:.6g}',
+        'escape': f'{report.escape if report.solved else math.nan:.6g}',
     }
+    if report.blocked is not None:
+        values |= {f'blocked_{part}': f'{n:.6g}' for part, n in report.blocked._asdict().items()}
     result = report.result
     if result is not None:
         first_elapsed, first_length = result.first_solution or (math.nan, math.nan)

@@ -15,6 +15,7 @@ class Outcome(enum.Enum):
     MAP_CHANGED = enum.auto()
     BAD_REQUEST = enum.auto()
     BAD_FRAME = enum.auto()
+    NO_START = enum.auto()
     INVALID_START = enum.auto()
     INVALID_GOAL = enum.auto()
     UNREACHABLE = enum.auto()

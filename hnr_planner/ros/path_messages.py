@@ -10,25 +10,28 @@ from nav_msgs.srv import GetPlan
 import numpy as np
 from numpy.typing import NDArray
 from rclpy.serialization import serialize_message
+from rclpy.time import Time
 from std_msgs.msg import Header
 
 
 def request_from_message(message: GetPlan.Request, algorithm: str) -> Request:
     """Return what `message` asks for, as it stands; it is checked when it is answered."""
     return Request(
-        start=_pose(message.start),
-        goal=_pose(message.goal),
+        start=pose_from_message(message.start),
+        goal=pose_from_message(message.goal),
         tolerance=as_written(message.tolerance),
         algorithm=algorithm,
     )
 
 
-def _pose(message: PoseStamped) -> Pose:
+def pose_from_message(message: PoseStamped) -> Pose:
+    """Return the pose in `message`, as it stands."""
     position, rotation = message.pose.position, message.pose.orientation
     return Pose(
         position=(position.x, position.y, position.z),
         orientation=(rotation.x, rotation.y, rotation.z, rotation.w),
         frame=message.header.frame_id,
+        stamp=Time.from_msg(message.header.stamp).nanoseconds,
     )
 
 

@@ -5,10 +5,12 @@ import threading
 import traceback
 from typing import NamedTuple
 
+from hnr_planner.ros.answer import answer, NewestMap, ToFrame
 from hnr_planner.ros.outcomes import Outcome, Refusal
 from hnr_planner.ros.path_messages import path_message, pose_rows
+from hnr_planner.ros.path_watch import PathWatch
 from hnr_planner.ros.publications import Publications, Result
-from hnr_planner.ros.requests import answer, NewestMap, Report, Request
+from hnr_planner.ros.requests import Report, Request
 from hnr_planner.ros.searches import RunningSearches
 from hnr_planner.ros.settings import Settings
 from hnr_planner.ros.statistics import Statistics
@@ -36,16 +38,25 @@ class PlanServer:
         Returns the parameters in force.
     newest_map : callable
         Returns the map in use, or raises Refusal.
+    to_frame : callable
+        Brings a pose into the frame of the map, or raises Refusal.
 
     """
 
     def __init__(
-        self, node: Node, settings: Callable[[], Settings], newest_map: NewestMap
+        self,
+        node: Node,
+        settings: Callable[[], Settings],
+        newest_map: NewestMap,
+        to_frame: ToFrame,
     ) -> None:
         self._node = node
         self._settings = settings
         self._newest_map = newest_map
+        self._to_frame = to_frame
         self._publications = Publications(node)
+        self._in_order = threading.Lock()
+        self.watch = PathWatch(node, self._publications, newest_map)
         self.searches = RunningSearches()
         self.statistics = Statistics()
 
@@ -70,8 +81,10 @@ class PlanServer:
         self.statistics.count(report)
         poses, header = pose_rows(report, settings.pose_spacing), Header(frame_id=report.frame)
         path = path_message(poses, header)
-        result = Result(report, poses, header, caller, settings.samples_max)
-        self._publications.hand_over(result)
+        result = Result(caller, request, report, poses, header, settings.samples_max)
+        with self._in_order:
+            self._publications.hand_over(result)
+            self.watch.follow(report)
         return Answer(report, path)
 
     def answer_sent(self) -> None:
@@ -91,7 +104,7 @@ class PlanServer:
         """Return the answer to `request`, even if the planner has a defect."""
         try:
             with self.searches.one(cancel):
-                return answer(request, settings, self._newest_map, cancel)
+                return answer(request, settings, self._newest_map, cancel, self._to_frame)
         except Refusal as refusal:
             return Report(refusal.outcome, refusal.why, request, elapsed=0.0)
         except Exception as error:  # without an answer the caller would wait for ever

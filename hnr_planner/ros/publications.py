@@ -9,7 +9,7 @@ from diagnostic_msgs.msg import DiagnosticArray
 from hnr_planner.ros.marker_messages import serialised_markers
 from hnr_planner.ros.outcome_messages import outcome_message
 from hnr_planner.ros.path_messages import serialised_path
-from hnr_planner.ros.requests import Report
+from hnr_planner.ros.requests import Report, Request
 from hnr_planner.ros.sample_messages import samples_message
 from nav_msgs.msg import Path
 import numpy as np
@@ -44,27 +44,30 @@ def latched(depth: int) -> QoSProfile:
 @dataclass(frozen=True, eq=False)
 class Result:
     """
-    What is to be published about one request.
+    What is to be told about one request.
 
     Parameters
     ----------
+    caller : str
+        Service, action or topic that the request came by.
+    request : Request
+        What was asked for, as it arrived.
     report : Report
         How it ended.
     poses : (n, 7)
         Its path, as `pose_rows` gives it.
     header : Header
         Header of its path; the stamp is still to be set.
-    caller : str
-        Service, action or topic that the request came by.
     samples_max : int
         Most samples to show.
 
     """
 
+    caller: str
+    request: Request
     report: Report
     poses: NDArray[np.float64]
     header: Header
-    caller: str
     samples_max: int
 
 
@@ -103,6 +106,11 @@ class Publications:
         """Say that the answer has been sent whose result this thread has handed over."""
         self._answering.sent.set()
 
+    def announce(self, report: Report, name: str) -> None:
+        """Publish an outcome that no request asked for."""
+        with self._in_order:
+            self._outcome.publish(outcome_message(report, name, self._stamps.later()))
+
     def leave_out_pictures(self) -> None:
         """Publish no more samples and markers: the last answers must not queue behind them."""
         self._pictures = False
@@ -119,14 +127,14 @@ class Publications:
             result, sent = waiting
             sent.wait(LONGEST_HOLD)
             try:
-                self._log(result.caller, result.report)
+                self._log(result.caller, result.request, result.report)
                 self._publish(result)
             except Exception as error:  # must not stop those that follow
                 self._logger.error(f'could not tell about a result: {error!r}')
 
-    def _log(self, caller: str, report: Report) -> None:
+    def _log(self, caller: str, request: Request, report: Report) -> None:
         """Say in one line how a request ended."""
-        if report.request.omits_start:
+        if request.omits_start:
             self._logger.info(
                 f'{caller}: the start is (0, 0) in no frame, as if left out: taken literally'
             )

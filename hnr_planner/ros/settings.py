@@ -99,6 +99,30 @@ class Settings:
         lower=-1,
         upper=LARGEST_INT,
     )
+    default_tolerance: float = _setting(
+        0.0,
+        'How far from a goal that cannot be reached the path may end, for clicks and actions; a '
+        'request by a service brings its own tolerance.',
+        'm',
+        lower=0.0,
+        upper=1000.0,
+    )
+    escape_radius: float = _setting(
+        0.0,
+        'A start that is not free is led to free space in a straight line, if that is within this '
+        'distance and no obstacle between; 0: such a start is refused.',
+        'm',
+        lower=0.0,
+        upper=10.0,
+    )
+    transform_tolerance: float = _setting(
+        0.3,
+        'Longest time to wait for the transform of a start or goal in another frame than the '
+        "map's, inside time_limit.",
+        's',
+        lower=0.0,
+        upper=60.0,
+    )
     pose_spacing: float = _setting(
         -1.0,
         'Largest distance between poses of the path; -1: the resolution of the map; 0: the '
@@ -109,6 +133,9 @@ class Settings:
     )
     samples_max: int = _setting(
         100_000, 'Most samples in ~/samples for one request.', lower=0, upper=10_000_000
+    )
+    rviz_clicks: bool = _setting(
+        False, 'Listen to the click tools of RViz: initialpose keeps the start, goal_pose plans.'
     )
     autostart: bool = _setting(
         True,

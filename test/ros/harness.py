@@ -75,6 +75,8 @@ class NodeProcess:
             for name, value in parameters.items()
             for word in ('-p', f'{name}:={_yaml(value)}')
         ]
+        # A map that differs from the last in its cells only is told of quietly.
+        settings += ['--log-level', 'hnr_planner:=debug']
         command = [sys.executable, '-m', f'hnr_planner.ros.{module}', '--ros-args', *settings]
         self._log = log
         with log.open('w') as output:

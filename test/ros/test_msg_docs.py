@@ -1,14 +1,19 @@
 """The pages in msg_docs/ and the nodes say the same: names, types, examples that work."""
 
+from array import array
 from collections.abc import Iterator
+from importlib.util import find_spec
 from pathlib import Path
 import re
 import shlex
-from test.ros.harness import Client, node_process, NodeProcess, until
+from test.ros.harness import Client, LATCHED, MANY, node_process, NodeProcess, until
 from typing import Any
 
+from geometry_msgs.msg import PoseStamped, PoseWithCovarianceStamped
 from hnr_planner.core import ALGORITHMS
+from hnr_planner.ros.outcome_messages import read_outcome
 from hnr_planner.ros.outcomes import Outcome
+from nav_msgs.msg import OccupancyGrid
 from nav_msgs.srv import GetMap, GetPlan
 import pytest
 from std_srvs.srv import Trigger
@@ -53,13 +58,19 @@ def documented(node: str) -> set[tuple[str, str, str]]:
         for cells in rows(page):
             if cells[0] in ('kind', 'name', 'type'):
                 entry[cells[0]] = cells[1]
-            if cells[0] == 'type' and entry['kind'].endswith(node):
+            if cells[0] == 'type' and _is_there(entry['kind'], node):
                 found.add((_kind(entry['kind']), _full(entry['name'], node), entry['type']))
             if len(cells) == 3 and cells[0].startswith(('service', 'topic, published')):
                 # A row that names no node is true of each.
                 if cells[0].partition('`')[2] in ('', node):
                     found.add((_kind(cells[0]), _full(cells[1], node), cells[2]))
     return found
+
+
+def _is_there(kind: str, node: str) -> bool:
+    """Return whether a page speaks of this node, and of what it has here."""
+    words, _, needed = kind.partition(' with ')
+    return words.strip('`').endswith(node) and (not needed or bool(find_spec(needed)))
 
 
 def _kind(words: str) -> str:
@@ -96,10 +107,20 @@ def in_graph(client: Client, node: str) -> set[tuple[str, str, str]]:
     }
 
 
+CLICKS = {'/initialpose', '/goal_pose'}
+"""Topics that are there only while the parameter `rviz_clicks` says so."""
+
+
 @pytest.mark.parametrize('node', ['hnr_planner', 'map_source'])
 def test_pages_and_graph_name_the_same(client: Client, node: str) -> None:
     until(lambda: node in client.node.get_node_names(), f'{node} in the graph')
-    assert in_graph(client, node) == documented(node)
+    usual = {entry for entry in documented(node) if entry[1] not in CLICKS}
+    assert in_graph(client, node) == usual
+    if node == 'hnr_planner':
+        client.set_parameters(rviz_clicks=True)
+        until(lambda: in_graph(client, node) == documented(node), 'the topics of clicks')
+        client.set_parameters(rviz_clicks=False)
+        until(lambda: in_graph(client, node) == usual, 'an end of clicks')
 
 
 def test_index_names_every_page() -> None:
@@ -129,6 +150,9 @@ def examples(command: str) -> list[list[str]]:
 
 
 TYPES = {
+    'geometry_msgs/msg/PoseStamped': PoseStamped,
+    'geometry_msgs/msg/PoseWithCovarianceStamped': PoseWithCovarianceStamped,
+    'nav_msgs/msg/OccupancyGrid': OccupancyGrid,
     'nav_msgs/srv/GetPlan': GetPlan,
     'nav_msgs/srv/GetMap': GetMap,
     'std_srvs/srv/Trigger': Trigger,
@@ -140,6 +164,8 @@ def fill(message: Any, values: dict[str, Any]) -> Any:
     for name, value in values.items():
         if isinstance(value, dict):
             fill(getattr(message, name), value)
+        elif isinstance(value, list):
+            setattr(message, name, array('b', value))
         else:
             setattr(message, name, value)
     return message
@@ -148,6 +174,8 @@ def fill(message: Any, values: dict[str, Any]) -> Any:
 def test_service_examples_work(client: Client) -> None:
     called = set()
     for name, kind, *fields in examples('ros2 service call'):
+        if 'odom' in str(fields):
+            continue  # needs a transform, see the tests of frames
         service = TYPES[kind]
         request = fill(service.Request(), yaml.safe_load(fields[0]) if fields else {})
         answer = client.call(service, name, request)
@@ -165,10 +193,30 @@ def test_service_examples_work(client: Client) -> None:
 
 
 def test_echo_examples_name_real_topics(client: Client) -> None:
-    topics = {name for _, name, _ in documented('hnr_planner') if name not in BY_ITSELF}
+    published = {name for kind, name, _ in documented('hnr_planner') if kind == 'publisher'}
     echoed = {words[0] for words in examples('ros2 topic echo')}
-    assert echoed < topics
-    assert len(echoed) == 5
+    assert echoed == published - BY_ITSELF
+
+
+def publishing_example(client: Client, topic: str) -> None:
+    """Publish what the example says to whoever listens."""
+    (words,) = (words for words in examples('ros2 topic pub') if words[-3] == topic)
+    kind = TYPES[words[-2]]
+    qos = LATCHED if 'transient_local' in words else MANY
+    publisher = client.node.create_publisher(kind, f'/{topic}', qos)
+    until(publisher.get_subscription_count, f'a subscription to {topic}')
+    publisher.publish(fill(kind(), yaml.safe_load(words[-1])))
+
+
+def test_examples_of_clicks_work(client: Client, planner: NodeProcess) -> None:
+    client.set_parameters(rviz_clicks=True)
+    publishing_example(client, 'initialpose')
+    planner.wait_for('the start is')
+    answered = len(client.outcomes)
+    publishing_example(client, 'goal_pose')
+    until(lambda: len(client.outcomes) > answered, 'the outcome of a click')
+    assert read_outcome(client.outcomes[-1])[0] is Outcome.SOLVED
+    client.set_parameters(rviz_clicks=False)
 
 
 def test_parameter_examples_work(client: Client) -> None:
@@ -185,3 +233,11 @@ def test_page_of_outcomes_names_them_all(client: Client) -> None:
     values = {item.key for item in client.outcomes[-1].status[0].values}
     named = {name for cells in rows(page) for name in re.findall(r'[a-z_]+', cells[0])}
     assert values <= named
+
+
+def test_example_of_a_map_works(client: Client, planner: NodeProcess) -> None:
+    """Stands last: it replaces the map of the other examples."""
+    publishing_example(client, 'map')
+    planner.wait_for('3 x 2 cells of 1 m')
+    published = {words[-3] for words in examples('ros2 topic pub')}
+    assert published == {'map', 'map_updates', 'initialpose', 'goal_pose'}

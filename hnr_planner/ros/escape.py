@@ -1,0 +1,114 @@
+"""
+The way out of a start that is not free: straight, short, and never through an obstacle.
+
+A robot may well stand where the map says it cannot: a little too near to a wall, or in a cell
+that a sensor saw wrongly. It is led to free space in a straight line that crosses no occupied
+cell. Only an obstacle that the start itself lies in or touches cannot count.
+"""
+
+from typing import NamedTuple
+
+import cv2
+from hnr_planner.core import GridSpace
+from hnr_planner.core.spaces.primitives import part_of
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+Bools = NDArray[np.bool_]
+
+
+def way_out(
+    space: GridSpace, start: tuple[float, float], goal: tuple[float, float], radius: float
+) -> Floats | None:
+    """
+    Return the nearest free point (2,) that a straight way leads to; None when there is none.
+
+    Points from which the goal can be reached come first. Of each cell its nearest point and, where
+    that is hidden behind a corner, its centre are tried. A start outside the map has no way in:
+    nothing is known of what lies between.
+
+    Parameters
+    ----------
+    space : GridSpace
+        The map.
+    start, goal : (x, y)
+        In metres, in the frame of the map.
+    radius : float
+        Longest way out [m].
+
+    """
+    here = space.to_kernel(np.array(start)) - space.frame.RIM
+    if not (0.0 <= here[0] <= space.shape[1] and 0.0 <= here[1] <= space.shape[0]):
+        return None
+    surroundings = _Surroundings.cut(space, here, radius / space.resolution)
+    exits = surroundings.exits(space.margin)
+    lengths = np.hypot(*(exits.points - surroundings.here).T)
+    elsewhere = exits.parts != part_of(space.data, space.to_kernel(np.array(goal)))
+    order = np.lexsort([lengths, elsewhere])
+    within = lengths[order] <= radius / space.resolution
+    obstacles = GridSpace.from_blocked(surroundings.obstacles)
+    for point in exits.points[order[within]]:
+        if obstacles.first_blocked_segment(np.stack([surroundings.here, point])) is None:
+            return space.from_kernel(point + surroundings.corner + space.frame.RIM)
+    return None
+
+
+class _Exits(NamedTuple):
+    """Points (k, 2) of free cells, and the connected part (k,) of free space each is in."""
+
+    points: Floats
+    parts: NDArray[np.int32]
+
+
+class _Surroundings(NamedTuple):
+    """
+    A window of the map around a start, with a rim of one open cell; lengths are in cells.
+
+    Attributes
+    ----------
+    corner : (2,)
+        Where the window begins on the map, (column, row).
+    here : (2,)
+        The start, from that corner.
+    parts : (rows, columns) int32
+        Connected part of free space that each cell belongs to; 0 where it is not free.
+    obstacles : (rows, columns) bool
+        Occupied cells, but for those of an obstacle that the start lies in or touches.
+
+    """
+
+    corner: Floats
+    here: Floats
+    parts: NDArray[np.int32]
+    obstacles: Bools
+
+    @classmethod
+    def cut(cls, space: GridSpace, here: Floats, reach: float) -> '_Surroundings':
+        """Cut out all that is within `reach` of `here`."""
+        first = np.maximum(np.floor(here - reach), 0.0).astype(int)
+        last = np.minimum(np.ceil(here + reach), space.shape[::-1]).astype(int)
+        window = slice(first[1], last[1]), slice(first[0], last[0])
+        parts = np.pad(space.data.labels[1:-1, 1:-1][window], 1)
+        occupied = np.pad(space.occupied[window], 1)
+        here = here - (first - 1)
+        _, obstacle = cv2.connectedComponents(occupied.view(np.uint8), connectivity=8)
+        others = occupied & ~np.isin(obstacle, obstacle[_cells_around(here)])
+        return cls(first - 1.0, here, parts, others)
+
+    def exits(self, margin: float) -> _Exits:
+        """Return the free points that some way leads to from here."""
+        _, region = cv2.connectedComponents((~self.obstacles).view(np.uint8), connectivity=4)
+        around = region[_cells_around(self.here)]
+        rows, columns = np.nonzero((self.parts > 0) & np.isin(region, around[around > 0]))
+        cells = np.stack([columns, rows], axis=-1)
+        nearest = np.clip(self.here, cells + margin, cells + (1.0 - margin))
+        parts = self.parts[rows, columns]
+        return _Exits(np.concatenate([nearest, cells + 0.5]), np.tile(parts, 2))
+
+
+def _cells_around(point: Floats) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """Return the rows and columns of the cells that hold a point, on their edges as well."""
+    lower, upper = np.ceil(point).astype(int) - 1, np.floor(point).astype(int)
+    columns, rows = np.array([lower, upper]).T
+    return np.repeat(rows, 2), np.tile(columns, 2)

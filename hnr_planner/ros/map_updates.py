@@ -1,0 +1,74 @@
+"""Updates of parts of the map, as costmaps of Nav2 send them, where map_msgs is installed."""
+
+from collections.abc import Callable
+from typing import Any
+
+from rclpy.callback_groups import CallbackGroup
+from rclpy.clock import Clock, ClockType
+from rclpy.node import Node
+from rclpy.qos import QoSProfile
+
+try:
+    from map_msgs.msg import OccupancyGridUpdate
+except ImportError:  # a ROS from wheels has none
+    HAVE_MAP_MSGS = False
+else:
+    HAVE_MAP_MSGS = True
+
+PROFILE = QoSProfile(depth=10)
+"""Reliable and volatile: the last update alone, latched, says nothing of those before it."""
+LOOK_EVERY = 1.0
+"""Seconds between looks at whether somebody sends what cannot be read."""
+
+
+class MapUpdates:
+    """
+    Listens to updates of the map until `close`.
+
+    Without map_msgs it warns, once, when somebody sends some.
+
+    Parameters
+    ----------
+    node : Node
+        Subscribes.
+    topic : str
+        Full name of the topic.
+    receive : callable
+        Called with each `map_msgs/OccupancyGridUpdate`.
+    group : CallbackGroup
+        Of the map's callbacks.
+
+    """
+
+    def __init__(
+        self, node: Node, topic: str, receive: Callable[[Any], None], group: CallbackGroup
+    ) -> None:
+        self._node = node
+        self._topic = topic
+        if HAVE_MAP_MSGS:
+            self._subscription = node.create_subscription(
+                OccupancyGridUpdate, topic, receive, PROFILE, callback_group=group
+            )
+        else:
+            self._timer = node.create_timer(
+                LOOK_EVERY,
+                self._warn_once,
+                callback_group=group,
+                clock=Clock(clock_type=ClockType.STEADY_TIME),
+            )
+
+    def close(self) -> None:
+        """Listen no more."""
+        if HAVE_MAP_MSGS:
+            self._node.destroy_subscription(self._subscription)
+        else:
+            self._node.destroy_timer(self._timer)
+
+    def _warn_once(self) -> None:
+        if self._node.count_publishers(self._topic):
+            self._node.get_logger().warning(
+                f'{self._topic}: somebody sends updates of parts of the map, and they cannot be '
+                'read without the package map_msgs: install it, or set always_send_full_costmap '
+                'to true at the costmap'
+            )
+            self._timer.cancel()
