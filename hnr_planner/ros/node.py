@@ -10,6 +10,7 @@ from hnr_planner.ros.health import Health
 from hnr_planner.ros.managed_node import ManagedNode
 from hnr_planner.ros.map_input import MapInput
 from hnr_planner.ros.map_store import MapSnapshot
+from hnr_planner.ros.nav2_server import HAVE_NAV2, Nav2Server
 from hnr_planner.ros.outcomes import Outcome, Refusal
 from hnr_planner.ros.parameters import Parameters
 from hnr_planner.ros.path_messages import request_from_message
@@ -60,6 +61,14 @@ class PlannerNode(ManagedNode):
         self.create_service(
             Trigger, '~/cancel', self._cancel, callback_group=ReentrantCallbackGroup()
         )
+        if HAVE_NAV2:
+            Nav2Server(
+                self,
+                self._server,
+                lambda: self.settings,
+                self._newest_map,
+                self._to_frame_of_map,
+            )
         self._clicks = Clicks(self, self._server, lambda: self.settings, searches)
         self._clicks.listen(self.settings.rviz_clicks)
 

@@ -10,7 +10,6 @@ from nav_msgs.srv import GetPlan
 import numpy as np
 from numpy.typing import NDArray
 from rclpy.serialization import serialize_message
-from rclpy.time import Time
 from std_msgs.msg import Header
 
 
@@ -27,11 +26,13 @@ def request_from_message(message: GetPlan.Request, algorithm: str) -> Request:
 def pose_from_message(message: PoseStamped) -> Pose:
     """Return the pose in `message`, as it stands."""
     position, rotation = message.pose.position, message.pose.orientation
+    stamp = message.header.stamp
     return Pose(
         position=(position.x, position.y, position.z),
         orientation=(rotation.x, rotation.y, rotation.z, rotation.w),
         frame=message.header.frame_id,
-        stamp=Time.from_msg(message.header.stamp).nanoseconds,
+        # By hand: rclpy's Time refuses a negative one with an exception.
+        stamp=stamp.sec * 10**9 + stamp.nanosec,
     )
 
 

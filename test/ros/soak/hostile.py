@@ -75,7 +75,8 @@ class Generator:
         pose.header.frame_id = (
             self._one_of(FRAMES) if self._maybe(self._hostility) else world.frame
         )
-        pose.header.stamp.sec = int(self._one_of((0, 1, -1, 2**31 - 1, -(2**31))))
+        if self._maybe(self._hostility):
+            pose.header.stamp.sec = int(self._one_of((1, -1, 2**31 - 1, -(2**31))))
         place, turn = pose.pose.position, pose.pose.orientation
         place.x, place.y = self._point(world)
         if self._maybe(self._hostility):

@@ -44,7 +44,10 @@ class World:
         start, goal = request.start.pose, request.goal.pose
         numbers = [*_numbers(request.start), *_numbers(request.goal), request.tolerance]
         turned = any(_quaternion(request.goal))
+        stamps = [end.header.stamp.sec for end in (request.start, request.goal)]
         if not all(map(math.isfinite, numbers)) or not turned or request.tolerance < 0.0:
+            return 'BAD_REQUEST'
+        if min(stamps) < 0:
             return 'BAD_REQUEST'
         frames = {request.start.header.frame_id, request.goal.header.frame_id}
         if frames - {'', self.frame}:

@@ -14,7 +14,7 @@ from test.ros.harness import (
     SOON,
     until,
 )
-from test.ros.soak.callers import callers
+from test.ros.soak.callers import Caller, callers
 from test.ros.soak.effort import EFFORT
 from test.ros.soak.judge import World
 from test.ros.soak.worlds import END, LONG, plan_request, rooms, START
@@ -83,7 +83,7 @@ def test_node_that_is_killed_leaves_clients_that_can_ask_the_next_one(
     taken = []
     with callers(N_WAITING) as asking:
         for _ in range(EFFORT.rounds):
-            with searching(tmp_path, [caller.send for caller in asking]) as (planner, futures):
+            with searching(tmp_path, asking) as (planner, futures):
                 planner.popen.kill()
                 planner.popen.wait(SOON)
                 began = time.monotonic()
@@ -104,7 +104,7 @@ def test_clients_that_vanish_leave_the_node_to_others(tmp_path: Path, tell: Tell
     count = 0
     with (
         callers(1) as (other,),
-        searching(tmp_path, [other.send], time_limit=5.0) as (planner, _),
+        searching(tmp_path, [other], time_limit=5.0) as (planner, _),
     ):
         with client_of(planner) as client:
             for _ in range(EFFORT.rounds):
@@ -136,12 +136,14 @@ def vanishing(n_requests: int) -> Iterator[subprocess.Popen]:
 
 @contextmanager
 def searching(
-    folder: Path, send: list[Callable], time_limit: float = 60.0
+    folder: Path, asking: list[Caller], time_limit: float = 60.0
 ) -> Iterator[tuple[NodeProcess, list]]:
     """Run a node that searches for each of some callers, and return the futures of theirs."""
     with node_process('planner_node', folder / 'log', time_limit=time_limit) as planner:
         with client_of(planner, World(LONG, 0.05)) as client:
-            futures = [ask(plan_request(START, END)) for ask in send]
+            for caller in asking:
+                caller.ask_again_until_answered(SHORT)
+            futures = [caller.send(plan_request(START, END)) for caller in asking]
             client.wait_for_running(len(futures))
             yield planner, futures
 
@@ -158,7 +160,7 @@ def test_end_is_prompt_in_every_state(tmp_path: Path, where: str, tell: Tell) ->
         if where == 'searching':
             with (
                 callers(3) as asking,
-                searching(tmp_path, [c.send for c in asking]) as (planner, _),
+                searching(tmp_path, asking) as (planner, _),
             ):
                 taken.append(time_to_end(planner))
         else:
