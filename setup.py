@@ -59,7 +59,7 @@ setup(
         ('share/ament_index/resource_index/packages', [f'resource/{package_name}']),
         (f'share/{package_name}', ['package.xml']),
         (f'share/{package_name}/launch', glob('launch/*.launch.py')),
-        (f'share/{package_name}/config', glob('config/*.yaml') + glob('config/*.xml')),
+        (f'share/{package_name}/config', glob('config/*.*')),
         (f'share/{package_name}/config/maps', glob('config/maps/*.*')),
         # pip puts console scripts into bin/, where `ros2 run` does not look; colcon puts them
         # here and lets its own stand.

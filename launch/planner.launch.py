@@ -1,9 +1,11 @@
 """
-Start the planner, and a map source if a map is named.
+Start the planner, a map source if a map is named, and RViz if it is wished.
 
-    ros2 launch hnr_planner planner.launch.py map:=/path/to/map.yaml
+    ros2 launch hnr_planner planner.launch.py map:=/path/to/map.yaml rviz:=true
 
-Without ``map`` the planner listens to the topic ``map`` of a map server that runs already.
+Without ``map`` the planner listens to the topic ``map`` of a map server that runs already. No
+transition is sent from here: with ``autostart`` the planner activates itself, without it waits for
+a lifecycle manager.
 """
 
 from launch import LaunchDescription
@@ -19,42 +21,61 @@ from launch_ros.actions import Node
 from launch_ros.parameter_descriptions import ParameterValue
 from launch_ros.substitutions import FindPackageShare
 
+CONFIG = PathJoinSubstitution([FindPackageShare('hnr_planner'), 'config'])
+ARGUMENTS = (
+    ('map', '', 'Map file (YAML) to publish; empty for none.'),
+    (
+        'params_file',
+        PathJoinSubstitution([CONFIG, 'hnr_planner.yaml']),
+        'YAML file with the parameters of the planner.',
+    ),
+    ('namespace', '', 'Namespace of the nodes and topics.'),
+    ('use_sim_time', 'false', 'Take the time from /clock.'),
+    ('autostart', 'true', 'Activate the planner; false: a lifecycle manager does.'),
+    ('rviz', 'false', 'Start RViz with the layout of this package.'),
+    (
+        'rviz_clicks',
+        LaunchConfiguration('rviz'),
+        'Plan where the click tools of RViz say; as rviz if not given.',
+    ),
+)
+"""Name, default and description."""
+
+IN_LAYOUT = (
+    '/map',
+    '/map_updates',
+    '/initialpose',
+    '/goal_pose',
+    '/hnr_planner/samples',
+    '/hnr_planner/markers',
+    '/hnr_planner/path',
+)
+"""Topics that the layout of RViz names; they follow the namespace."""
+
 
 def generate_launch_description() -> LaunchDescription:
-    """Describe the arguments and the two nodes."""
-    default_params = PathJoinSubstitution(
-        [FindPackageShare('hnr_planner'), 'config', 'hnr_planner.yaml']
-    )
+    """Describe the arguments and the nodes."""
     namespace = LaunchConfiguration('namespace')
     map_file = LaunchConfiguration('map')
-    clock = {'use_sim_time': ParameterValue(LaunchConfiguration('use_sim_time'), value_type=bool)}
     # Room for large clouds; a profile that is chosen already stays.
     profile = 'FASTRTPS_DEFAULT_PROFILES_FILE'
-    our_profile = PathJoinSubstitution([FindPackageShare('hnr_planner'), 'config', 'fastdds.xml'])
-    map_parameters = {'yaml_filename': ParameterValue(map_file, value_type=str)}
+    our_profile = PathJoinSubstitution([CONFIG, 'fastdds.xml'])
 
     return LaunchDescription(
         [
-            DeclareLaunchArgument(
-                'map', default_value='', description='Map file (YAML) to publish; empty for none.'
-            ),
-            DeclareLaunchArgument(
-                'params_file',
-                default_value=default_params,
-                description='YAML file with the parameters of the planner.',
-            ),
-            DeclareLaunchArgument(
-                'namespace', default_value='', description='Namespace of the nodes and topics.'
-            ),
-            DeclareLaunchArgument(
-                'use_sim_time', default_value='false', description='Take the time from /clock.'
+            *(
+                DeclareLaunchArgument(name, default_value=default, description=description)
+                for name, default, description in ARGUMENTS
             ),
             Node(
                 package='hnr_planner',
                 executable='planner_node',
                 name='hnr_planner',
                 namespace=namespace,
-                parameters=[LaunchConfiguration('params_file'), clock],
+                parameters=[
+                    LaunchConfiguration('params_file'),
+                    _booleans('use_sim_time', 'autostart', 'rviz_clicks'),
+                ],
                 additional_env={profile: EnvironmentVariable(profile, default_value=our_profile)},
                 output='screen',
             ),
@@ -63,9 +84,27 @@ def generate_launch_description() -> LaunchDescription:
                 executable='map_node',
                 name='map_source',
                 namespace=namespace,
-                parameters=[map_parameters, clock],
+                parameters=[
+                    {'yaml_filename': ParameterValue(map_file, value_type=str)},
+                    _booleans('use_sim_time'),
+                ],
                 output='screen',
                 condition=IfCondition(NotEqualsSubstitution(map_file, '')),
             ),
+            Node(
+                package='rviz2',
+                executable='rviz2',
+                namespace=namespace,
+                arguments=['-d', PathJoinSubstitution([CONFIG, 'hnr_planner.rviz'])],
+                parameters=[_booleans('use_sim_time')],
+                remappings=[(topic, topic.lstrip('/')) for topic in IN_LAYOUT],
+                output='screen',
+                condition=IfCondition(LaunchConfiguration('rviz')),
+            ),
         ]
     )
+
+
+def _booleans(*names: str) -> dict[str, ParameterValue]:
+    """Return parameters that have the name and the value of a launch argument each."""
+    return {name: ParameterValue(LaunchConfiguration(name), value_type=bool) for name in names}

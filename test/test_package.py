@@ -91,7 +91,7 @@ def names(requirements: list[str]) -> set[str]:
 
 def is_ros(library: str) -> bool:
     of_messages = library.endswith(('_msgs', '_srvs', '_interfaces'))
-    return of_messages or library in ('bondpy', 'launch', 'launch_ros', 'rclpy', 'tf2_ros')
+    return of_messages or library in ('bond', 'bondpy', 'launch', 'launch_ros', 'rclpy', 'tf2_ros')
 
 
 def installed(distribution: Any) -> Iterator[tuple[str, list[str]]]:
@@ -235,7 +235,7 @@ print(plan(space, (0.5, 0.5), (1.5, 1.5), seed=1, time_limit=60.0).status.name)
     assert done.stdout.split() == ['SOLVED']
 
 
-def test_launch_file_describes_both_nodes() -> None:
+def test_launch_file_describes_its_nodes() -> None:
     pytest.importorskip('launch_ros', reason='launch and launch_ros come with a ROS from apt only')
     spec = importlib.util.spec_from_file_location('planner', ROOT / 'launch/planner.launch.py')
     assert spec is not None and spec.loader is not None
@@ -243,7 +243,7 @@ def test_launch_file_describes_both_nodes() -> None:
     spec.loader.exec_module(module)
     entities = module.generate_launch_description().entities
     names = {entity.node_executable for entity in entities if hasattr(entity, 'node_executable')}
-    assert names == {'map_node', 'planner_node'}
+    assert names == {'map_node', 'planner_node', 'rviz2'}
 
 
 # -- what gets installed

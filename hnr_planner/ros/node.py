@@ -3,6 +3,7 @@
 from functools import partial
 
 from hnr_planner.ros.answer import only_same_frame
+from hnr_planner.ros.bond import NodeBond
 from hnr_planner.ros.callback_group import BoundedCallbackGroup
 from hnr_planner.ros.clicks import Clicks
 from hnr_planner.ros.frames import Frames
@@ -45,6 +46,7 @@ class PlannerNode(ManagedNode):
         self._declared = Parameters(self, self._use_settings)
         self._map_input: MapInput | None = None
         self._frames: Frames | None = None
+        self._bond: NodeBond | None = None
         self._server = PlanServer(
             self, lambda: self.settings, self._newest_map, self._to_frame_of_map
         )
@@ -86,10 +88,15 @@ class PlannerNode(ManagedNode):
     def activate(self) -> None:
         """Begin to answer requests with paths."""
         self._server.searches.enable()
+        if not self.settings.autostart:
+            self._bond = NodeBond(self)
 
     def deactivate(self) -> None:
         """End all searches and answer requests as NOT_ACTIVE."""
         self._server.searches.disable()
+        if self._bond is not None:
+            self._bond.close()
+            self._bond = None
 
     def cleanup(self) -> None:
         """Listen to maps and transforms no more, and forget what came."""

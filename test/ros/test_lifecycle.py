@@ -1,6 +1,7 @@
 """The life of the node: every state, every transition, and what is answered in each."""
 
 from collections.abc import Iterator
+from importlib.util import find_spec
 from pathlib import Path
 import signal
 from test.ros.harness import (
@@ -21,6 +22,7 @@ from hnr_planner.ros.outcomes import Outcome
 from lifecycle_msgs.msg import Transition
 from lifecycle_msgs.srv import ChangeState, GetState
 import pytest
+from rclpy.duration import Duration
 
 START, GOAL = pose(0.5, 0.6), pose(4.5, 0.7)
 UNCONFIGURED, INACTIVE, ACTIVE, FINALIZED = 'unconfigured', 'inactive', 'active', 'finalized'
@@ -67,9 +69,9 @@ def change(client: Client, *transitions: int) -> list[bool]:
     ]
 
 
-def state(client: Client) -> str:
+def state(client: Client, node: str = '/hnr_planner') -> str:
     """Return the name of the node's state."""
-    answer = client.call(GetState, '/hnr_planner/get_state', GetState.Request())
+    answer = client.call(GetState, f'{node}/get_state', GetState.Request())
     return answer.current_state.label
 
 
@@ -160,6 +162,31 @@ def test_deactivation_ends_searches(client: Client, planner: NodeProcess) -> Non
         assert path.poses == []
         assert client.outcome_of(path)[0] is Outcome.CANCELLED
     assert outcome(client) is Outcome.NOT_ACTIVE
+
+
+def test_bond_lives_while_the_node_is_active(client: Client, planner: NodeProcess) -> None:
+    if find_spec('bondpy') is None:
+        change(client, CONFIGURE, ACTIVATE)
+        planner.wait_for('bond_timeout')
+        return
+    from bond.msg import Status
+    from bondpy.bondpy import Bond
+
+    heard = client.listen(Status, '/bond', MANY)
+    change(client, CONFIGURE)
+    for end in ((DEACTIVATE,), ()):
+        ours = Bond(client.node, '/bond', 'hnr_planner')
+        ours.start()
+        assert change(client, ACTIVATE) == [True]
+        assert ours.wait_until_formed(Duration(seconds=10))
+        assert any(message.active and message.instance_id != ours.instance_id for message in heard)
+        if end:
+            assert change(client, *end) == [True]
+        else:
+            assert planner.end(signal.SIGTERM) == 0
+        assert ours.wait_until_broken(Duration(seconds=3)), 'told at once, not missed'
+        ours.shutdown()
+    assert 'Traceback' not in planner.log, planner.log
 
 
 def test_parameters_change_in_every_state(client: Client) -> None:
