@@ -153,10 +153,16 @@ def until_time(ending: float, rng: np.random.Generator) -> Iterator:
 def right_on_some(sent: list[tuple[float, World]], one: Answered) -> bool:
     """Return whether an answer is right on one of the maps that may have been in use."""
     after = [*(when for when, _ in sent[1:]), np.inf]
-    return any(
-        world.expected(one.request) == SOLVED and complaints(world, one) == []
-        if one.path.poses
-        else world.expected(one.request) != SOLVED
+    in_use = [
+        world
         for (when, world), next_came in zip(sent, after, strict=True)
         if when < one.answered and next_came > one.sent - LONGEST_USE
-    )
+    ]
+    # The newest first: most often that is it.
+    return any(right_on(world, one) for world in reversed(in_use))
+
+
+def right_on(world: World, one: Answered) -> bool:
+    """Return whether an answer is right on a map."""
+    solvable = world.expected(one.request) == SOLVED
+    return solvable == bool(one.path.poses) and complaints(world, one) == []
