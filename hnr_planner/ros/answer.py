@@ -150,7 +150,7 @@ class _Job:
         result, why = self._plan_from(start, request, snapshot)
         escape, radius = 0.0, self.settings.escape_radius
         if result.status is PlannerStatus.INVALID_START and radius > 0.0:
-            outside = way_out(snapshot.space, start, request.goal.point, radius)
+            outside = way_out(snapshot, start, request.goal.point, radius)
             if outside is None:
                 why += f'; no straight way of {radius:g} m at most leads out of there'
             else:
@@ -214,5 +214,5 @@ def _still_holds(report: Report, newer: MapSnapshot) -> bool:
     if report.escape == 0.0:
         return True
     start, goal = report.request.start.point, report.request.goal.point
-    outside = way_out(newer.space, start, goal, 2.0 * report.escape)
+    outside = way_out(newer, start, goal, 2.0 * report.escape)
     return outside is not None and np.array_equal(outside, report.path[1])

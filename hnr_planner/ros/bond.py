@@ -33,4 +33,7 @@ class NodeBond:
     def close(self) -> None:
         """Break the bond, and tell the other side."""
         if HAVE_BOND:
+            # By itself it would leave the node with a subscription that is no more.
+            self._node.destroy_subscription(self._bond.sub)
             self._bond.shutdown()
+            self._node.destroy_publisher(self._bond.pub)

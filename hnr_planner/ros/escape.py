@@ -3,7 +3,8 @@ The way out of a start that is not free: straight, short, and never through an o
 
 A robot may well stand where the map says it cannot: a little too near to a wall, or in a cell
 that a sensor saw wrongly. It is led to free space in a straight line that crosses no occupied
-cell. Only an obstacle that the start itself lies in or touches cannot count.
+cell. Only an obstacle that the start itself lies in or touches cannot count, and of that only what
+has no higher a value than the start: from a costmap's inflation no way leads through the wall.
 """
 
 from typing import NamedTuple
@@ -11,6 +12,7 @@ from typing import NamedTuple
 import cv2
 from hnr_planner.core import GridSpace
 from hnr_planner.core.spaces.primitives import part_of
+from hnr_planner.ros.map_store import MapSnapshot
 import numpy as np
 from numpy.typing import NDArray
 
@@ -19,18 +21,19 @@ Bools = NDArray[np.bool_]
 
 
 def way_out(
-    space: GridSpace, start: tuple[float, float], goal: tuple[float, float], radius: float
+    snapshot: MapSnapshot, start: tuple[float, float], goal: tuple[float, float], radius: float
 ) -> Floats | None:
     """
     Return the nearest free point (2,) that a straight way leads to; None when there is none.
 
-    Points from which the goal can be reached come first. Of each cell its nearest point and, where
-    that is hidden behind a corner, its centre are tried. A start outside the map has no way in:
-    nothing is known of what lies between.
+    Points from which the goal can be reached come first, unless the start lies in an obstacle: the
+    nearest point is then most likely on the side that the robot is on. Of each cell its nearest
+    point and, where that is hidden behind a corner, its centre are tried. A start outside the map
+    has no way in: nothing is known of what lies between.
 
     Parameters
     ----------
-    space : GridSpace
+    snapshot : MapSnapshot
         The map.
     start, goal : (x, y)
         In metres, in the frame of the map.
@@ -38,13 +41,16 @@ def way_out(
         Longest way out [m].
 
     """
+    space = snapshot.space
     here = space.to_kernel(np.array(start)) - space.frame.RIM
     if not (0.0 <= here[0] <= space.shape[1] and 0.0 <= here[1] <= space.shape[0]):
         return None
-    surroundings = _Surroundings.cut(space, here, radius / space.resolution)
+    surroundings = _Surroundings.cut(snapshot, here, radius / space.resolution)
     exits = surroundings.exits(space.margin)
     lengths = np.hypot(*(exits.points - surroundings.here).T)
     elsewhere = exits.parts != part_of(space.data, space.to_kernel(np.array(goal)))
+    if surroundings.in_obstacle:
+        elsewhere[:] = False
     order = np.lexsort([lengths, elsewhere])
     within = lengths[order] <= radius / space.resolution
     obstacles = GridSpace.from_blocked(surroundings.obstacles)
@@ -74,7 +80,10 @@ class _Surroundings(NamedTuple):
     parts : (rows, columns) int32
         Connected part of free space that each cell belongs to; 0 where it is not free.
     obstacles : (rows, columns) bool
-        Occupied cells, but for those of an obstacle that the start lies in or touches.
+        Occupied cells, but for those of an obstacle that the start lies in or touches with no
+        higher a value than there.
+    in_obstacle : bool
+        Whether the start lies in an obstacle or touches one.
 
     """
 
@@ -82,19 +91,24 @@ class _Surroundings(NamedTuple):
     here: Floats
     parts: NDArray[np.int32]
     obstacles: Bools
+    in_obstacle: bool
 
     @classmethod
-    def cut(cls, space: GridSpace, here: Floats, reach: float) -> '_Surroundings':
+    def cut(cls, snapshot: MapSnapshot, here: Floats, reach: float) -> '_Surroundings':
         """Cut out all that is within `reach` of `here`."""
+        space = snapshot.space
         first = np.maximum(np.floor(here - reach), 0.0).astype(int)
         last = np.minimum(np.ceil(here + reach), space.shape[::-1]).astype(int)
         window = slice(first[1], last[1]), slice(first[0], last[0])
         parts = np.pad(space.data.labels[1:-1, 1:-1][window], 1)
         occupied = np.pad(space.occupied[window], 1)
+        values = np.where(occupied, np.pad(snapshot.grid.data[window], 1), -1)
         here = here - (first - 1)
+        around = _cells_around(here)
         _, obstacle = cv2.connectedComponents(occupied.view(np.uint8), connectivity=8)
-        others = occupied & ~np.isin(obstacle, obstacle[_cells_around(here)])
-        return cls(first - 1.0, here, parts, others)
+        own = np.isin(obstacle, obstacle[around]) & (values <= values[around].max())
+        in_obstacle = bool(occupied[around].any())
+        return cls(first - 1.0, here, parts, occupied & ~own, in_obstacle)
 
     def exits(self, margin: float) -> _Exits:
         """Return the free points that some way leads to from here."""

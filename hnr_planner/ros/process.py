@@ -9,6 +9,7 @@ SIGINT and SIGTERM end the process with exit code 0, however often and whenever 
 
 from collections.abc import Callable
 import gc
+from contextlib import suppress
 import os
 import signal
 import sys
@@ -102,7 +103,9 @@ def _spin(
     def spin() -> None:
         try:
             while not ending.is_set():
-                executor.spin_once()
+                # What is destroyed while the executor looks at it is gone at its next look.
+                with suppress(rclpy_implementation.InvalidHandle):
+                    executor.spin_once()
         except Exception as error:
             failures.append(error)
             stop.request()

@@ -7,6 +7,7 @@ from test.ros.test_requests import ask, rooms, SETTINGS, store
 
 from hnr_planner.core import GridSpace
 from hnr_planner.ros.escape import way_out
+from hnr_planner.ros.map_store import Grid, MapSnapshot
 from hnr_planner.ros.outcomes import Outcome
 import numpy as np
 import pytest
@@ -45,11 +46,13 @@ def crosses(space: GridSpace, way: np.ndarray) -> bool:
 def test_way_out_is_the_shortest_straight_one(origin: tuple[float, float, float]) -> None:
     rng, lengths = np.random.default_rng(1), []
     for _ in range(25):
-        space = GridSpace.from_blocked(rng.random((30, 30)) < 0.06, CELL, origin, robot_radius=0.2)
+        data = np.where(rng.random((30, 30)) < 0.06, 100, 0).astype(np.int8)
+        space = GridSpace.from_occupancy(data, CELL, origin, robot_radius=0.2)
+        snapshot = MapSnapshot(space, Grid(data, CELL, origin, 'map'), 1)
         goal = tuple(space.cell_centres(*np.argwhere(space.largest_component())[0]))
         inflated = np.argwhere(space.blocked & ~space.occupied)
         start = tuple(space.cell_centres(*rng.choice(inflated)) + rng.uniform(-0.04, 0.04, 2))
-        point = way_out(space, start, goal, 0.6)
+        point = way_out(snapshot, start, goal, 0.6)
         expected = nearest_by_hand(space, start, 0.6, goal)
         if math.isinf(expected):
             assert point is None or not space.connected(point, goal)
@@ -115,6 +118,33 @@ def test_start_in_an_obstacle_leaves_it_by_the_shortest_way() -> None:
     assert report.path[1].tolist() == pytest.approx([1.4, 1.0], abs=1e-3)
     assert report.clearance == 0.0
     assert 'is occupied' in report.why
+
+
+@pytest.mark.parametrize('goal', [(0.5, 1.5), (3.5, 1.5)])
+def test_no_way_leads_from_the_inflation_of_a_costmap_through_its_wall(
+    goal: tuple[float, float],
+) -> None:
+    data = np.zeros((20, 40), dtype=np.int8)
+    data[:, 17:23], data[:, 20] = 99, 100
+    costmap = replace(SETTINGS, occupied_threshold=99, escape_radius=1.0)
+    for start, side in (((1.85, 1.0), 1.7), ((2.15, 1.0), 2.3)):
+        report = ask(store(data, costmap), start, goal, settings=costmap)
+        same_side = (goal[0] < 2.0) == (start[0] < 2.0)
+        assert report.outcome is (Outcome.SOLVED if same_side else Outcome.UNREACHABLE)
+        if same_side:
+            assert report.path[1].tolist() == pytest.approx([side, 1.0], abs=1e-3)
+    # Nothing free is left on the side of the start: it is not led to the other one.
+    data[:, :17] = 99
+    report = ask(store(data, costmap), (1.85, 1.0), (3.5, 1.5), settings=costmap)
+    assert report.outcome is Outcome.INVALID_START
+
+
+def test_start_in_a_wall_is_not_led_to_its_far_side_for_the_goal() -> None:
+    data = np.zeros((20, 40), dtype=np.int8)
+    data[:, 19:23] = 100
+    settings = replace(SETTINGS, escape_radius=1.0)
+    report = ask(store(data), (1.95, 1.0), (3.5, 1.0), settings=settings)
+    assert report.outcome is Outcome.UNREACHABLE
 
 
 def test_way_out_leads_to_where_the_goal_can_be_reached() -> None:

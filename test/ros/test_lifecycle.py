@@ -175,17 +175,18 @@ def test_bond_lives_while_the_node_is_active(client: Client, planner: NodeProces
     heard = client.listen(Status, '/bond', MANY)
     change(client, CONFIGURE)
     for end in ((DEACTIVATE,), ()):
-        ours = Bond(client.node, '/bond', 'hnr_planner')
-        ours.start()
+        manager = Client()
+        bond = Bond(manager.node, '/bond', 'hnr_planner')
+        bond.start()
         assert change(client, ACTIVATE) == [True]
-        assert ours.wait_until_formed(Duration(seconds=10))
-        assert any(message.active and message.instance_id != ours.instance_id for message in heard)
+        assert bond.wait_until_formed(Duration(seconds=10))
+        assert any(message.active and message.instance_id != bond.instance_id for message in heard)
         if end:
             assert change(client, *end) == [True]
         else:
             assert planner.end(signal.SIGTERM) == 0
-        assert ours.wait_until_broken(Duration(seconds=3)), 'told at once, not missed'
-        ours.shutdown()
+        assert bond.wait_until_broken(Duration(seconds=3)), 'told at once, not missed'
+        manager.close()
     assert 'Traceback' not in planner.log, planner.log
 
 
@@ -195,6 +196,25 @@ def test_parameters_change_in_every_state(client: Client) -> None:
         assert answer.successful, answer.reason
         assert change(client, transition) == [True]
     assert client.get_parameters('robot_radius') == [0.01 * SHUTDOWN[UNCONFIGURED]]
+
+
+def test_node_survives_many_changes_while_requests_come(
+    client: Client, planner: NodeProcess
+) -> None:
+    """Subscriptions come and go under the executor's eyes; every request is answered by name."""
+    client.publish_map(grid_message(two_rooms()))
+    change(client, CONFIGURE, ACTIVATE)
+    planner.wait_for('map received')
+    known = {Outcome.SOLVED, Outcome.NOT_ACTIVE, Outcome.NO_MAP, Outcome.MAP_NOT_READY}
+    futures = []
+    for turn in range(20):
+        futures += [client.send_plan(START, GOAL) for _ in range(5)]
+        client.set_parameters(rviz_clicks=bool(turn % 2))
+        assert all(change(client, DEACTIVATE, CLEANUP, CONFIGURE, ACTIVATE))
+    outcomes = {client.outcome_of(result_of(future).plan)[0] for future in futures}
+    assert outcomes <= known | {Outcome.CANCELLED}
+    until(lambda: outcome(client) is Outcome.SOLVED, 'the map again')
+    assert 'Traceback' not in planner.log and planner.popen.poll() is None
 
 
 @pytest.mark.parametrize('where', WAY_TO)

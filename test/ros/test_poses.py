@@ -2,7 +2,14 @@
 
 import math
 
-from hnr_planner.ros.orientations import normalised, quaternion_of, tilt_of, yaw_of
+from hnr_planner.ros.orientations import (
+    normalised,
+    product,
+    quaternion_of,
+    rotated,
+    tilt_of,
+    yaw_of,
+)
 from hnr_planner.ros.poses import MOST_POSES, poses_along
 from hnr_planner.ros.sample_cap import shown_samples
 import numpy as np
@@ -102,3 +109,18 @@ def test_quaternion_without_direction_has_no_normal_form() -> None:
 def test_tilt_is_the_angle_to_the_vertical() -> None:
     roll = (math.sin(0.15), 0.0, 0.0, math.cos(0.15))
     assert tilt_of(roll) == pytest.approx(0.3)
+
+
+def test_rotations_follow_one_another() -> None:
+    first, second = quaternion_of(0.4), quaternion_of(1.1)
+    assert product(first, second) == pytest.approx(quaternion_of(1.5))
+    roll = (math.sin(0.25), 0.0, 0.0, math.cos(0.25))
+    vector = (1.0, -2.0, 0.5)
+    step_by_step = rotated(rotated(vector, roll), first)
+    assert rotated(vector, product(first, roll)) == pytest.approx(step_by_step)
+
+
+def test_vector_is_turned_by_a_rotation() -> None:
+    assert rotated((1.0, 0.0, 3.0), quaternion_of(math.pi / 2)) == pytest.approx((0.0, 1.0, 3.0))
+    quarter_roll = (math.sqrt(0.5), 0.0, 0.0, math.sqrt(0.5))
+    assert rotated((5.0, 1.0, 0.0), quarter_roll) == pytest.approx((5.0, 0.0, 1.0))
