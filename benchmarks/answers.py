@@ -130,8 +130,8 @@ def _process(*module_and_arguments: str) -> Iterator[None]:
     try:
         yield
     finally:
-        process.terminate()
-        process.wait(SOON)
+        process.kill()  # rclpy's own executors may miss a gentler signal
+        process.wait()
 
 
 class _Caller:

@@ -7,20 +7,19 @@ before is sent back by an executor with threads, such as every node has that sta
 
 from __future__ import annotations
 
-from contextlib import suppress
 import sys
 
 from geometry_msgs.msg import PoseStamped
 from nav_msgs.srv import GetPlan
 import rclpy
-from rclpy.executors import ExternalShutdownException, MultiThreadedExecutor
+from rclpy.executors import MultiThreadedExecutor
 from rclpy.node import Node
 
 NAME = 'ready_made'
 
 
 def main(n_poses: int) -> None:
-    """Serve until a signal comes."""
+    """Serve until the process is killed."""
     answer = GetPlan.Response()
     answer.plan.header.frame_id = 'map'
     for _ in range(n_poses):
@@ -32,9 +31,7 @@ def main(n_poses: int) -> None:
     node.create_service(GetPlan, '~/plan', lambda _request, _response: answer)
     executor = MultiThreadedExecutor(2)
     executor.add_node(node)
-    with suppress(KeyboardInterrupt, ExternalShutdownException):
-        executor.spin()
-    rclpy.try_shutdown()
+    executor.spin()
 
 
 if __name__ == '__main__':

@@ -8,8 +8,8 @@ SIGINT and SIGTERM end the process with exit code 0, however often and whenever 
 """
 
 from collections.abc import Callable
-import gc
 from contextlib import suppress
+import gc
 import os
 import signal
 import sys
