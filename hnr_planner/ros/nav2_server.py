@@ -186,6 +186,7 @@ class _Action:
         handle.publish_feedback(self._kind.Feedback())
         request = request_of(handle.request, self._poses_of(handle.request), self._settings())
         report, path = self._server.answer(self._name, request, goal.cancel)
+        self._server.answer_sent()  # the result leaves when this returns
         with self._one_at_a_time:
             del self._goals[_key(handle)]
         if goal.cancelled:

@@ -1,5 +1,6 @@
 """Everything that is told about a request once it is answered, by a thread of its own."""
 
+from collections import deque
 from dataclasses import dataclass
 import queue
 import threading
@@ -27,7 +28,7 @@ OUTCOMES_KEPT = 100
 LONGEST_DELIVERY = Duration(seconds=0.2)
 """How long the last message of a topic is given to arrive when the node ends."""
 LONGEST_HOLD = 0.1
-"""How long [s] a result waits for its answer to be sent, if that is never said."""
+"""How long [s] a result waits for its answer to be sent, while later ones are sent already."""
 LONGEST_BACKLOG = 20
 """Results that may wait; with more, samples and markers (pictures for people) are left out."""
 
@@ -76,7 +77,8 @@ class Publications:
     Logs and publishes how each request ended, in the order of the stamps.
 
     No answer waits for that: `hand_over` costs the caller nothing but a place in a queue, and the
-    thread that works it off begins a result when `answer_sent` says that its answer is on its way.
+    thread that works it off wakes when `answer_sent` says that an answer is on its way. Whoever
+    hands over has to say so.
     """
 
     def __init__(self, node: Node) -> None:
@@ -90,8 +92,8 @@ class Publications:
         self._pictures = True
         self._in_order = threading.Lock()
         self._answering = _Answering()
-        self._waiting: queue.SimpleQueue[tuple[Result, threading.Event] | None]
-        self._waiting = queue.SimpleQueue()
+        self._waiting: deque[tuple[Result, threading.Event]] = deque()
+        self._wake: queue.SimpleQueue[bool] = queue.SimpleQueue()
         self._thread = threading.Thread(target=self._publish_all, name='publish', daemon=True)
         self._thread.start()
 
@@ -100,11 +102,14 @@ class Publications:
         self._answering.sent = sent = threading.Event()
         with self._in_order:
             result.header.stamp = self._stamps.later()
-            self._waiting.put((result, sent))
+            self._waiting.append((result, sent))
 
     def answer_sent(self) -> None:
         """Say that the answer has been sent whose result this thread has handed over."""
-        self._answering.sent.set()
+        if self._answering.sent is not None:
+            self._answering.sent.set()
+            self._answering.sent = None
+            self._wake.put(True)
 
     def announce(self, report: Report, name: str) -> None:
         """Publish an outcome that no request asked for."""
@@ -117,20 +122,25 @@ class Publications:
 
     def close(self) -> None:
         """Publish what still waits, and end the thread once subscribers have it."""
-        self._waiting.put(None)
+        self._wake.put(False)
         self._thread.join()
         for publisher in (self._outcome, self._path, self._samples, self._markers):
             publisher.wait_for_all_acked(LONGEST_DELIVERY)
 
     def _publish_all(self) -> None:
-        while (waiting := self._waiting.get()) is not None:
-            result, sent = waiting
-            sent.wait(LONGEST_HOLD)
-            try:
-                self._log(result.caller, result.request, result.report)
-                self._publish(result)
-            except Exception as error:  # must not stop those that follow
-                self._logger.error(f'could not tell about a result: {error!r}')
+        while self._wake.get():
+            self._tell_next()
+        while self._waiting:
+            self._tell_next()
+
+    def _tell_next(self) -> None:
+        result, sent = self._waiting.popleft()
+        sent.wait(LONGEST_HOLD)
+        try:
+            self._log(result.caller, result.request, result.report)
+            self._publish(result)
+        except Exception as error:  # must not stop those that follow
+            self._logger.error(f'could not tell about a result: {error!r}')
 
     def _log(self, caller: str, request: Request, report: Report) -> None:
         """Say in one line how a request ended."""
@@ -149,7 +159,7 @@ class Publications:
         name = f'{self._name}/{result.caller}'
         self._outcome.publish(outcome_message(report, name, header.stamp))
         self._path.publish(serialised_path(result.poses, header))
-        if self._pictures and self._waiting.qsize() <= LONGEST_BACKLOG:
+        if self._pictures and len(self._waiting) <= LONGEST_BACKLOG:
             cloud = samples_message(report.result, result.samples_max, header)
             self._samples.publish(cloud)
             self._markers.publish(serialised_markers(report, header))
@@ -159,7 +169,7 @@ class _Answering(threading.local):
     """The event of the answer that a thread is about to send."""
 
     def __init__(self) -> None:
-        self.sent = threading.Event()
+        self.sent: threading.Event | None = None
 
 
 class _Stamps:
