@@ -24,6 +24,7 @@ help:
 	@echo 'make demo MAP=FILE.yaml    the same on a map of your own'
 	@echo 'make demo KEEP=1           leave the nodes running, to try calls by hand'
 	@echo 'make test                  run the tests (ARGS="-k name -x" goes to pytest)'
+	@echo 'make soak                  the nodes under load and faults, for a quarter of an hour'
 	@echo 'make check                 format, lint, types, spelling, then the tests'
 	@echo 'make bench                 side by side with OMPL and grid search, a quarter of an hour'
 	@echo 'make bench QUICK=1         the same in a minute or two, for a look'
@@ -71,6 +72,10 @@ demo: install
 .PHONY: test
 test: install
 	$(VENV) -m pytest $(ARGS)
+
+.PHONY: soak
+soak: install
+	HNR_SOAK=1 $(VENV) -m pytest test/ros/soak $(ARGS)
 
 .PHONY: check
 check: lint

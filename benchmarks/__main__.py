@@ -14,6 +14,7 @@ import os
 from pathlib import Path
 import time
 
+from benchmarks.answers import answers
 from benchmarks.clearance import clearance
 from benchmarks.competitors import Competitor, lineup
 from benchmarks.every_problem import every_problem
@@ -39,6 +40,7 @@ SECTIONS: tuple[SectionOf, ...] = (
     success,
     roadmap,
     clearance,
+    answers,
     properties,
     every_problem,
 )

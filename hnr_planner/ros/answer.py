@@ -13,6 +13,7 @@ import time
 
 from hnr_planner.core import HnrError, plan, PlannerStatus, PlanResult
 from hnr_planner.ros.escape import way_out
+from hnr_planner.ros.legs import joined
 from hnr_planner.ros.map_store import MapSnapshot
 from hnr_planner.ros.outcomes import Outcome, Refusal
 from hnr_planner.ros.path_validity import first_blocked_pose
@@ -88,7 +89,7 @@ class _Job:
         """Plan on `snapshot`, and again for as long as a newer map blocks the path just found."""
         first = snapshot
         while True:
-            report = self._plan(self._in_frame(request, snapshot.frame), snapshot)
+            report = self._plan_legs(self._in_frame(request, snapshot.frame), snapshot)
             if report.outcome is Outcome.TIMEOUT and snapshot is not first:
                 raise self._map_changed()
             if not report.solved:
@@ -118,9 +119,25 @@ class _Job:
             except Refusal as refusal:
                 raise Refusal(refusal.outcome, f'the {name} {refusal.why}') from refusal
 
-        return replace(
-            request, start=bring('start', request.start), goal=bring('goal', request.goal)
-        )
+        start, *via, goal = (bring(name, pose) for name, pose in request.named_poses)
+        return replace(request, start=start, via=tuple(via), goal=goal)
+
+    def _plan_legs(self, request: Request, snapshot: MapSnapshot) -> Report:
+        """Plan on one map, from each pose to the next; a leg that fails ends it, in its name."""
+        if not request.via:
+            return self._plan(request, snapshot)
+        legs: list[Report] = []
+        start, ends = request.start, (*request.via, request.goal)
+        for number, end in enumerate(ends, 1):
+            leg = self._plan(replace(request, start=start, via=(), goal=end), snapshot)
+            if not leg.solved:
+                return replace(leg, why=f'leg {number} of {len(ends)}: {leg.why}')
+            legs.append(leg)
+            x, y = leg.path[-1].tolist()
+            start = replace(end, position=(x, y, 0.0))
+        result = joined([leg.result for leg in legs if leg.result is not None])
+        why = '; '.join(f'leg {number}: {leg.why}' for number, leg in enumerate(legs, 1))
+        return replace(legs[0], why=why, request=request, result=result)
 
     def _plan(self, request: Request, snapshot: MapSnapshot) -> Report:
         """

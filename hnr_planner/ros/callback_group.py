@@ -1,5 +1,6 @@
 """A callback group that keeps some of the executor's threads for others."""
 
+from collections.abc import Callable
 import threading
 from typing import Any
 
@@ -11,12 +12,14 @@ class BoundedCallbackGroup(CallbackGroup):
     Let at most `limit` callbacks of this group run at once; more wait for their turn.
 
     Searches are in one such group, smaller than the number of threads: so there is always a
-    thread for cancelling them.
+    thread for cancelling them. `afterwards` is called when a callback of a service has ended and
+    its answer has been sent, in the same thread.
     """
 
-    def __init__(self, limit: int) -> None:
+    def __init__(self, limit: int, afterwards: Callable[[], None]) -> None:
         super().__init__()
         self._free = limit
+        self._afterwards = afterwards
         self._lock = threading.Lock()
 
     def can_execute(self, entity: Any) -> bool:
@@ -35,3 +38,4 @@ class BoundedCallbackGroup(CallbackGroup):
         """Give the place back."""
         with self._lock:
             self._free += 1
+        self._afterwards()

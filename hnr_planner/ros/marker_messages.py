@@ -1,12 +1,15 @@
 """`visualization_msgs/MarkerArray`: a search as a person wants to see it in RViz."""
 
-from builtin_interfaces.msg import Time
+import math
+from typing import NamedTuple
+
 from geometry_msgs.msg import Point, Pose, Vector3
 from hnr_planner.core import PlanResult
 from hnr_planner.ros.requests import Report, Request
 from hnr_planner.ros.sample_cap import shown_samples
 import numpy as np
 from numpy.typing import NDArray
+from rclpy.serialization import serialize_message
 from std_msgs.msg import ColorRGBA, Header
 from visualization_msgs.msg import Marker, MarkerArray
 
@@ -20,24 +23,34 @@ START = ColorRGBA(r=0.10, g=0.65, b=0.25, a=1.0)
 GOAL = ColorRGBA(r=0.75, g=0.10, b=0.55, a=1.0)
 
 
-def markers_message(report: Report, stamp: Time) -> MarkerArray:
+def serialised_markers(report: Report, header: Header) -> bytes:
     """
-    Return samples, tree or chain, path, start and goal of a solved request.
+    Return samples, tree or chain, path, start and goal of a solved request, a MarkerArray.
 
-    The first marker deletes those of the request before; after a failure it stands alone.
+    The first marker deletes those of the request before; after a failure it stands alone. The
+    message is in its serialised form, without an object for each point.
     """
-    header = Header(stamp=stamp, frame_id=report.frame)
-    markers = [Marker(header=header, action=Marker.DELETEALL)]
+    markers, drawn = [Marker(header=header, action=Marker.DELETEALL)], []
     if report.solved and report.result is not None and report.snapshot is not None:
         cell = report.snapshot.grid.resolution
-        shapes = _search_shapes(report.result, cell) + _request_shapes(report.request, cell)
-        for shape in shapes:
-            shape.header = header
-        markers += shapes
-    return MarkerArray(markers=markers)
+        shapes = [*_search_shapes(report.result, cell), *_request_shapes(report.request, cell)]
+        markers += [_marker(shape, header) for shape in shapes]
+        drawn = [shape.points for shape in shapes if len(shape.points) > 0]
+    return _with_points(serialize_message(MarkerArray(markers=markers)), drawn)
 
 
-def _search_shapes(result: PlanResult, cell: float) -> list[Marker]:
+class _Shape(NamedTuple):
+    """What is drawn under a name: at a place, or through points (n, 2)."""
+
+    name: str
+    kind: int
+    colour: ColorRGBA
+    size: Vector3
+    points: NDArray[np.float64] = np.empty((0, 2))
+    place: tuple[float, float] = (0.0, 0.0)
+
+
+def _search_shapes(result: PlanResult, cell: float) -> list[_Shape]:
     """Return the samples, the edges between them and the path."""
     samples, parents = result.samples, result.parents
     dots = shown_samples(parents, MOST_POINTS)
@@ -50,39 +63,58 @@ def _search_shapes(result: PlanResult, cell: float) -> list[Marker]:
     if len(path) > MOST_POINTS:
         path = path[np.linspace(0, len(path) - 1, MOST_POINTS).astype(int)]
     return [
-        _shape('samples', Marker.POINTS, SAMPLES, Vector3(x=cell, y=cell), samples[dots.rows]),
-        _shape('tree', Marker.LINE_LIST, EDGES, Vector3(x=cell / 4.0), edges),
-        _shape('path', Marker.LINE_STRIP, PATH, Vector3(x=cell), path),
+        _Shape('samples', Marker.POINTS, SAMPLES, Vector3(x=cell, y=cell), samples[dots.rows]),
+        _Shape('tree', Marker.LINE_LIST, EDGES, Vector3(x=cell / 4.0), edges),
+        _Shape('path', Marker.LINE_STRIP, PATH, Vector3(x=cell), path),
     ]
 
 
-def _request_shapes(request: Request, cell: float) -> list[Marker]:
+def _request_shapes(request: Request, cell: float) -> list[_Shape]:
     """Return the start and the goal asked for."""
     size = Vector3(x=4.0 * cell, y=4.0 * cell, z=4.0 * cell)
-    shapes = []
-    for name, colour, pose in (
-        ('start', START, request.start),
-        ('goal', GOAL, request.goal),
-    ):
-        marker = _shape(name, Marker.SPHERE, colour, size, np.empty((0, 2)))
-        marker.pose.position.x, marker.pose.position.y = pose.point
-        shapes.append(marker)
-    return shapes
+    return [
+        _Shape('start', Marker.SPHERE, START, size, place=request.start.point),
+        _Shape('goal', Marker.SPHERE, GOAL, size, place=request.goal.point),
+    ]
 
 
-def _shape(
-    name: str, kind: int, colour: ColorRGBA, size: Vector3, points: NDArray[np.float64]
-) -> Marker:
-    """Return one marker under its own name; its header is still to be set."""
+def _marker(shape: _Shape, header: Header) -> Marker:
+    """Return the marker of a shape, with `_ONE_POINT` for its points."""
     pose = Pose()
+    pose.position.x, pose.position.y = shape.place
     pose.orientation.w = 1.0
     return Marker(
-        ns=name,
+        header=header,
+        ns=shape.name,
         id=0,
-        type=int(kind),
+        type=int(shape.kind),
         action=Marker.ADD,
         pose=pose,
-        scale=size,
-        color=colour,
-        points=[Point(x=x, y=y, z=0.0) for x, y in points.tolist()],
+        scale=shape.size,
+        color=shape.colour,
+        points=[_ONE_POINT] if len(shape.points) > 0 else [],
     )
+
+
+_ONE_POINT = Point(x=math.nan, y=math.nan, z=math.nan)
+_ITS_BYTES = np.full(3, math.nan).tobytes()
+"""Found nowhere else in a serialised message: numbers are finite, and strings hold no zeros."""
+
+
+def _with_points(serialised: bytes, sequences: list[NDArray[np.float64]]) -> bytes:
+    """
+    Return serialised markers with all points (n, 2) for each `_ONE_POINT`, in their order.
+
+    The four bytes before it say how many there are: what stands before them in a marker ends at
+    a multiple of eight bytes, less four, so nothing lies between. A point has three times eight
+    bytes, so all that follows stays aligned.
+    """
+    parts, done = [], 0
+    for points in sequences:
+        place = serialised.index(_ITS_BYTES, done)
+        count = place - 4
+        rows = np.zeros((len(points), 3))
+        rows[:, :2] = points
+        parts += [serialised[done:count], np.uint32(len(rows)).tobytes(), rows.tobytes()]
+        done = place + len(_ITS_BYTES)
+    return b''.join([*parts, serialised[done:]])

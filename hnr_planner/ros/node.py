@@ -11,6 +11,7 @@ from hnr_planner.ros.health import Health
 from hnr_planner.ros.managed_node import ManagedNode
 from hnr_planner.ros.map_input import MapInput
 from hnr_planner.ros.map_store import MapSnapshot
+from hnr_planner.ros.nav2_server import HAVE_NAV2, Nav2Server
 from hnr_planner.ros.outcomes import Outcome, Refusal
 from hnr_planner.ros.parameters import Parameters
 from hnr_planner.ros.path_messages import request_from_message
@@ -50,7 +51,7 @@ class PlannerNode(ManagedNode):
             self, lambda: self.settings, self._newest_map, self._to_frame_of_map
         )
         self._health = Health(self, self._find_map_input, self._server)
-        searches = BoundedCallbackGroup(MOST_SEARCHES)
+        searches = BoundedCallbackGroup(MOST_SEARCHES, self._server.answer_sent)
         for name, algorithm in SERVICES.items():
             self.create_service(
                 GetPlan,
@@ -62,6 +63,14 @@ class PlannerNode(ManagedNode):
         self.create_service(
             Trigger, '~/cancel', self._cancel, callback_group=ReentrantCallbackGroup()
         )
+        if HAVE_NAV2:
+            Nav2Server(
+                self,
+                self._server,
+                lambda: self.settings,
+                self._newest_map,
+                self._to_frame_of_map,
+            )
         self._clicks = Clicks(self, self._server, lambda: self.settings, searches)
         self._clicks.listen(self.settings.rviz_clicks)
 

@@ -46,3 +46,28 @@ def first_blocked_pose(
         free = min(snapshot.space.chord(begin, step).upper, 1.0)
     x, y = (begin + free * step).tolist()
     return PlanarPose(x, y, math.atan2(step[1], step[0]))
+
+
+def blocked_poses(points: NDArray[np.float64], frame: str, snapshot: MapSnapshot) -> list[int]:
+    """
+    Return which poses are not free, or not to be reached in a straight line from the one before.
+
+    Parameters
+    ----------
+    points : (n, 2)
+        Where they are [m]; those that are not finite count as not free.
+    frame : str
+        The frame of their numbers; in a map with another frame none is free.
+    snapshot : MapSnapshot
+        The map to hold them against.
+
+    """
+    if frame != snapshot.frame:
+        return list(range(len(points)))
+    space = snapshot.space
+    free = np.logical_and.reduce(np.isfinite(points), axis=1)
+    free[free] = space.contains(points[free])
+    reached = free.copy()
+    for k in np.flatnonzero(free[:-1] & free[1:]).tolist():
+        reached[k + 1] = space.is_motion_valid(points[k], points[k + 1])
+    return np.flatnonzero(~reached).tolist()

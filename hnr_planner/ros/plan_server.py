@@ -7,15 +7,16 @@ from typing import NamedTuple
 
 from hnr_planner.ros.answer import answer, NewestMap, ToFrame
 from hnr_planner.ros.outcomes import Outcome, Refusal
-from hnr_planner.ros.path_messages import path_message
+from hnr_planner.ros.path_messages import path_message, pose_rows
 from hnr_planner.ros.path_watch import PathWatch
-from hnr_planner.ros.publications import Publications
+from hnr_planner.ros.publications import Publications, Result
 from hnr_planner.ros.requests import Report, Request
 from hnr_planner.ros.searches import RunningSearches
 from hnr_planner.ros.settings import Settings
 from hnr_planner.ros.statistics import Statistics
 from nav_msgs.msg import Path
 from rclpy.node import Node
+from std_msgs.msg import Header
 
 
 class Answer(NamedTuple):
@@ -78,13 +79,17 @@ class PlanServer:
         settings = self._settings()
         report = self._report(request, settings, cancel or threading.Event())
         self.statistics.count(report)
-        self._log(caller, request, report)
-        path = path_message(report, settings.pose_spacing)
-        name = f'{self._node.get_fully_qualified_name()}/{caller}'
+        poses, header = pose_rows(report, settings.pose_spacing), Header(frame_id=report.frame)
+        path = path_message(poses, header)
+        result = Result(caller, request, report, poses, header, settings.samples_max)
         with self._in_order:
-            self._publications.hand_over(report, path, name, settings.samples_max)
+            self._publications.hand_over(result)
             self.watch.follow(report)
         return Answer(report, path)
+
+    def answer_sent(self) -> None:
+        """Say that the answer that this thread got last is on its way to whoever asked."""
+        self._publications.answer_sent()
 
     def end(self) -> None:
         """Let no more searches in, end those that run, and publish no more pictures."""
@@ -106,16 +111,3 @@ class PlanServer:
             self._node.get_logger().error(f'a defect of the planner:\n{traceback.format_exc()}')
             why = f'a defect of the planner, please report it: {error!r}'
             return Report(Outcome.INTERNAL_ERROR, why, request, elapsed=0.0)
-
-    def _log(self, caller: str, request: Request, report: Report) -> None:
-        """Say in one line how a request ended."""
-        logger = self._node.get_logger()
-        if request.omits_start:
-            logger.info(
-                f'{caller}: the start is (0, 0) in no frame, as if left out: taken literally'
-            )
-        text = f'{caller}: {report.outcome.name} after {report.elapsed:.3f} s: {report.why}'
-        if report.solved:
-            logger.info(text)
-        else:
-            logger.warning(text)

@@ -1,27 +1,34 @@
-"""Everything that is published about a request, by a thread of its own."""
+"""Everything that is told about a request once it is answered, by a thread of its own."""
 
+from collections import deque
 from dataclasses import dataclass
 import queue
 import threading
 
 from builtin_interfaces.msg import Time as TimeMessage
 from diagnostic_msgs.msg import DiagnosticArray
-from hnr_planner.ros.marker_messages import markers_message
+from hnr_planner.ros.marker_messages import serialised_markers
 from hnr_planner.ros.outcome_messages import outcome_message
-from hnr_planner.ros.requests import Report
+from hnr_planner.ros.path_messages import serialised_path
+from hnr_planner.ros.requests import Report, Request
 from hnr_planner.ros.sample_messages import samples_message
 from nav_msgs.msg import Path
+import numpy as np
+from numpy.typing import NDArray
 from rclpy.clock import Clock
 from rclpy.duration import Duration
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.time import Time
 from sensor_msgs.msg import PointCloud2
+from std_msgs.msg import Header
 from visualization_msgs.msg import MarkerArray
 
 OUTCOMES_KEPT = 100
 LONGEST_DELIVERY = Duration(seconds=0.2)
 """How long the last message of a topic is given to arrive when the node ends."""
+LONGEST_HOLD = 0.1
+"""How long [s] a result waits for its answer to be sent, while later ones are sent already."""
 LONGEST_BACKLOG = 20
 """Results that may wait; with more, samples and markers (pictures for people) are left out."""
 
@@ -36,23 +43,46 @@ def latched(depth: int) -> QoSProfile:
 
 
 @dataclass(frozen=True, eq=False)
-class _Result:
-    """What is to be published about one request; `name` says who answered it."""
+class Result:
+    """
+    What is to be told about one request.
 
+    Parameters
+    ----------
+    caller : str
+        Service, action or topic that the request came by.
+    request : Request
+        What was asked for, as it arrived.
+    report : Report
+        How it ended.
+    poses : (n, 7)
+        Its path, as `pose_rows` gives it.
+    header : Header
+        Header of its path; the stamp is still to be set.
+    samples_max : int
+        Most samples to show.
+
+    """
+
+    caller: str
+    request: Request
     report: Report
-    path: Path
-    name: str
+    poses: NDArray[np.float64]
+    header: Header
     samples_max: int
 
 
 class Publications:
     """
-    Publishes outcome, path, samples and markers of each request, in the order of their stamps.
+    Logs and publishes how each request ended, in the order of the stamps.
 
-    `hand_over` costs the caller nothing but a place in a queue, so no answer waits for a picture.
+    No answer waits for that: `hand_over` costs the caller nothing but a place in a queue, and the
+    thread that works it off wakes when `answer_sent` says that an answer is on its way. Whoever
+    hands over has to say so.
     """
 
     def __init__(self, node: Node) -> None:
+        self._name = node.get_fully_qualified_name()
         self._logger = node.get_logger()
         self._stamps = _Stamps(node.get_clock())
         self._outcome = node.create_publisher(DiagnosticArray, '~/outcome', latched(OUTCOMES_KEPT))
@@ -61,16 +91,25 @@ class Publications:
         self._markers = node.create_publisher(MarkerArray, '~/markers', latched(1))
         self._pictures = True
         self._in_order = threading.Lock()
-        self._waiting: queue.SimpleQueue[_Result | None] = queue.SimpleQueue()
+        self._answering = _Answering()
+        self._waiting: deque[tuple[Result, threading.Event]] = deque()
+        self._wake: queue.SimpleQueue[bool] = queue.SimpleQueue()
         self._thread = threading.Thread(target=self._publish_all, name='publish', daemon=True)
         self._thread.start()
 
-    def hand_over(self, report: Report, path: Path, name: str, samples_max: int) -> None:
-        """Stamp `path`, the answer to a request, and publish all about it soon."""
+    def hand_over(self, result: Result) -> None:
+        """Stamp the header of a result, and tell all about it soon."""
+        self._answering.sent = sent = threading.Event()
         with self._in_order:
-            # The poses share this header.
-            path.header.stamp = self._stamps.later()
-            self._waiting.put(_Result(report, path, name, samples_max))
+            result.header.stamp = self._stamps.later()
+            self._waiting.append((result, sent))
+
+    def answer_sent(self) -> None:
+        """Say that the answer has been sent whose result this thread has handed over."""
+        if self._answering.sent is not None:
+            self._answering.sent.set()
+            self._answering.sent = None
+            self._wake.put(True)
 
     def announce(self, report: Report, name: str) -> None:
         """Publish an outcome that no request asked for."""
@@ -83,26 +122,54 @@ class Publications:
 
     def close(self) -> None:
         """Publish what still waits, and end the thread once subscribers have it."""
-        self._waiting.put(None)
+        self._wake.put(False)
         self._thread.join()
         for publisher in (self._outcome, self._path, self._samples, self._markers):
             publisher.wait_for_all_acked(LONGEST_DELIVERY)
 
     def _publish_all(self) -> None:
-        while (result := self._waiting.get()) is not None:
-            try:
-                self._publish(result)
-            except Exception as error:  # a lost picture must not stop those that follow
-                self._logger.error(f'could not publish a result: {error!r}')
+        while self._wake.get():
+            self._tell_next()
+        while self._waiting:
+            self._tell_next()
 
-    def _publish(self, result: _Result) -> None:
-        report, stamp = result.report, result.path.header.stamp
-        self._outcome.publish(outcome_message(report, result.name, stamp))
-        self._path.publish(result.path)
-        if self._pictures and self._waiting.qsize() <= LONGEST_BACKLOG:
-            cloud = samples_message(report.result, result.samples_max, report.frame, stamp)
+    def _tell_next(self) -> None:
+        result, sent = self._waiting.popleft()
+        sent.wait(LONGEST_HOLD)
+        try:
+            self._log(result.caller, result.request, result.report)
+            self._publish(result)
+        except Exception as error:  # must not stop those that follow
+            self._logger.error(f'could not tell about a result: {error!r}')
+
+    def _log(self, caller: str, request: Request, report: Report) -> None:
+        """Say in one line how a request ended."""
+        if request.omits_start:
+            self._logger.info(
+                f'{caller}: the start is (0, 0) in no frame, as if left out: taken literally'
+            )
+        text = f'{caller}: {report.outcome.name} after {report.elapsed:.3f} s: {report.why}'
+        if report.solved:
+            self._logger.info(text)
+        else:
+            self._logger.warning(text)
+
+    def _publish(self, result: Result) -> None:
+        report, header = result.report, result.header
+        name = f'{self._name}/{result.caller}'
+        self._outcome.publish(outcome_message(report, name, header.stamp))
+        self._path.publish(serialised_path(result.poses, header))
+        if self._pictures and len(self._waiting) <= LONGEST_BACKLOG:
+            cloud = samples_message(report.result, result.samples_max, header)
             self._samples.publish(cloud)
-            self._markers.publish(markers_message(report, stamp))
+            self._markers.publish(serialised_markers(report, header))
+
+
+class _Answering(threading.local):
+    """The event of the answer that a thread is about to send."""
+
+    def __init__(self) -> None:
+        self.sent: threading.Event | None = None
 
 
 class _Stamps:

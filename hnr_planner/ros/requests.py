@@ -42,17 +42,28 @@ class Pose:
 
 
 NOWHERE = Pose((math.nan, math.nan, math.nan))
-"""The start of a request that came without one: it ends as NO_START."""
+"""The start or goal of a request that came without one: NO_START or BAD_REQUEST."""
 
 
 @dataclass(frozen=True)
 class Request:
-    """A path is asked for; `tolerance` [m] is how far from a blocked goal it may end."""
+    """
+    A path is asked for, through the poses of `via` in their order.
+
+    `tolerance` [m] is how far from a blocked goal, and from those on the way, it may pass.
+    """
 
     start: Pose
     goal: Pose
     tolerance: float
     algorithm: str
+    via: tuple[Pose, ...] = ()
+
+    @property
+    def named_poses(self) -> tuple[tuple[str, Pose], ...]:
+        """Return all poses, each with its name in words."""
+        via = tuple((f'pose {place} on the way', pose) for place, pose in enumerate(self.via, 1))
+        return (('start', self.start), *via, ('goal', self.goal))
 
     @property
     def omits_start(self) -> bool:
@@ -138,13 +149,20 @@ def check_request(request: Request) -> None:
     """Raise Refusal (NO_START, BAD_REQUEST) when `request` makes no sense on any map."""
     if request.start is NOWHERE:
         raise Refusal(Outcome.NO_START, 'there is no start yet to plan from')
-    for name, pose in (('start', request.start), ('goal', request.goal)):
+    if request.goal is NOWHERE:
+        raise Refusal(Outcome.BAD_REQUEST, 'there is no goal to plan to')
+    for name, pose in request.named_poses:
         for part, numbers in (('position', pose.position), ('orientation', pose.orientation)):
             if not all(math.isfinite(number) for number in numbers):
                 raise Refusal(
                     Outcome.BAD_REQUEST,
                     f'the {part} of the {name} must be finite, got {list(numbers)}',
                 )
+        if pose.stamp < 0:
+            raise Refusal(
+                Outcome.BAD_REQUEST,
+                f'the stamp of the {name} must not be negative, got {pose.stamp} ns',
+            )
     if normalised(request.goal.orientation) is None:
         raise Refusal(
             Outcome.BAD_REQUEST,

@@ -2,7 +2,6 @@
 
 import array
 
-from builtin_interfaces.msg import Time
 from hnr_planner.core import PlanResult
 from hnr_planner.ros.sample_cap import shown_samples
 import numpy as np
@@ -20,7 +19,7 @@ COLUMNS = (
 LAYOUT = np.dtype([(name, form) for name, form, _ in COLUMNS])
 
 
-def samples_message(result: PlanResult | None, limit: int, frame: str, stamp: Time) -> PointCloud2:
+def samples_message(result: PlanResult | None, limit: int, header: Header) -> PointCloud2:
     """
     Return at most `limit` samples; `parent` is the `index` of the sample it was grown from.
 
@@ -28,7 +27,7 @@ def samples_message(result: PlanResult | None, limit: int, frame: str, stamp: Ti
     """
     points = np.zeros(0, dtype=LAYOUT) if result is None else _points(result, limit)
     message = PointCloud2(
-        header=Header(stamp=stamp, frame_id=frame),
+        header=header,
         height=1,
         width=len(points),
         fields=[

@@ -123,6 +123,10 @@ class Settings:
         lower=0.0,
         upper=60.0,
     )
+    robot_base_frame: str = _setting(
+        'base_link',
+        'Frame of the robot: where a path begins that an action asks for without a start.',
+    )
     pose_spacing: float = _setting(
         -1.0,
         'Largest distance between poses of the path; -1: the resolution of the map; 0: the '

@@ -275,9 +275,14 @@ class Client:
         """Wait until the node says that so many searches run, from now on."""
         self._health.clear()
         until(
-            lambda: any(_running(message) == searches for message in list(self._health)),
+            lambda: searches in self._running(),
             f'{searches} running searches',
         )
+
+    def _running(self) -> list[int]:
+        """Return how many searches ran, from each of the node's reports of health."""
+        own = [m.status[0] for m in list(self._health) if self._planner in m.status[0].name]
+        return [int(item.value) for s in own for item in s.values if item.key == 'running']
 
     def cancel(self) -> Trigger.Response:
         """Cancel all running searches."""
@@ -299,11 +304,6 @@ class Client:
             GetParameters, f'{self._planner}/get_parameters', GetParameters.Request(names=names)
         )
         return [parameter_value_to_python(value) for value in answer.values]
-
-
-def _running(message: DiagnosticArray) -> int:
-    """Return how many searches run, from a report of health."""
-    return int(next(item.value for item in message.status[0].values if item.key == 'running'))
 
 
 def stamp_of(message: Any) -> tuple[int, int]:

@@ -121,6 +121,13 @@ def test_goal_without_orientation_is_a_bad_request(client: Client) -> None:
     assert outcome is Outcome.BAD_REQUEST and 'orientation' in why
 
 
+def test_stamp_before_the_beginning_of_time_is_a_bad_request(client: Client) -> None:
+    start = pose(*START)
+    start.header.stamp.sec = -1
+    outcome, why = refused(client, start, pose(*GOAL))
+    assert outcome is Outcome.BAD_REQUEST and 'stamp of the start' in why and '-1' in why
+
+
 def test_other_frame_is_a_bad_frame(client: Client) -> None:
     for ends in ((pose(*START, frame='odom'), pose(*GOAL)), (pose(*START), pose(1, 1, 'odom'))):
         outcome, why = refused(client, *ends)

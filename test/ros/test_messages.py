@@ -7,17 +7,22 @@ from builtin_interfaces.msg import Time
 from hnr_planner.core import GridSpace, plan
 from hnr_planner.ros.map_messages import as_written, grid_from_message, message_from_grid
 from hnr_planner.ros.map_store import Grid, MapError, MapSnapshot
-from hnr_planner.ros.marker_messages import markers_message, MOST_POINTS
+from hnr_planner.ros.marker_messages import MOST_POINTS, serialised_markers
 from hnr_planner.ros.outcomes import Outcome
+from hnr_planner.ros.path_messages import path_message, serialised_path
 from hnr_planner.ros.requests import Pose, Report, Request
 from hnr_planner.ros.sample_messages import LAYOUT, samples_message
 from nav_msgs.msg import OccupancyGrid
+from nav_msgs.msg import Path as PathMessage
 import numpy as np
 import pytest
+from rclpy.serialization import deserialize_message
 from sensor_msgs.msg import PointCloud2
-from visualization_msgs.msg import Marker
+from std_msgs.msg import Header
+from visualization_msgs.msg import Marker, MarkerArray
 
 STAMP = Time(sec=12, nanosec=34)
+HEADER = Header(stamp=STAMP, frame_id='map')
 DATA = np.arange(-1, 5, dtype=np.int8).reshape(2, 3)
 
 
@@ -118,9 +123,9 @@ def points_in(cloud: PointCloud2) -> np.ndarray:
 def test_cloud_holds_samples_and_parents_of_the_result() -> None:
     result = report_on_a_map().result
     assert result is not None and len(result.samples) > 10
-    cloud = samples_message(result, 100_000, 'map', STAMP)
+    cloud = samples_message(result, 100_000, HEADER)
     points = points_in(cloud)
-    assert (cloud.header.frame_id, cloud.header.stamp) == ('map', STAMP)
+    assert cloud.header == HEADER
     assert (cloud.height, cloud.width) == (1, len(result.samples))
     assert cloud.row_step == cloud.width * cloud.point_step == len(cloud.data)
     assert np.array_equal(
@@ -134,7 +139,7 @@ def test_cloud_holds_samples_and_parents_of_the_result() -> None:
 def test_capped_cloud_refers_to_its_own_points() -> None:
     result = report_on_a_map().result
     assert result is not None
-    points = points_in(samples_message(result, 9, 'map', STAMP))
+    points = points_in(samples_message(result, 9, HEADER))
     assert len(points) == 9
     # By place, since vertices of RRT at a wall may coincide in single precision.
     samples = [tuple(xy) for xy in result.samples.astype(np.float32).tolist()]
@@ -148,14 +153,56 @@ def test_capped_cloud_refers_to_its_own_points() -> None:
 
 
 def test_cloud_without_a_result_is_empty_and_well_formed() -> None:
-    cloud = samples_message(None, 100, '', STAMP)
+    cloud = samples_message(None, 100, Header())
     assert (cloud.width, len(cloud.data), cloud.point_step) == (0, 0, LAYOUT.itemsize)
+
+
+FRAMES = ['', 'a', 'ab', 'map', 'odom', 'floor', 'world', 'robot_1/map', 'карта']
+"""Names of all lengths modulo eight: what follows them in a message moves with them."""
+
+
+@pytest.mark.parametrize('frame', FRAMES)
+@pytest.mark.parametrize('n_poses', [0, 2, 3, 500])
+def test_path_from_arrays_is_the_path_of_the_answer(frame: str, n_poses: int) -> None:
+    rows = np.random.default_rng(n_poses).normal(size=(n_poses, 7))
+    header = Header(stamp=STAMP, frame_id=frame)
+    expected = path_message(rows, header)
+    path = deserialize_message(serialised_path(rows, header), PathMessage)
+    assert path == expected
+    assert len(path.poses) == n_poses
+    for pose, row in zip(path.poses, rows.tolist(), strict=True):
+        place, turn = pose.pose.position, pose.pose.orientation
+        assert [place.x, place.y, place.z, turn.x, turn.y, turn.z, turn.w] == row
+
+
+@pytest.mark.parametrize('frame', FRAMES)
+def test_markers_are_whole_in_every_frame(frame: str) -> None:
+    report = report_on_a_map()
+    header = Header(stamp=STAMP, frame_id=frame)
+    shapes = markers_of(report, header)
+    assert all(shape.header == header for shape in shapes)
+    assert [shape.points for shape in shapes] == [
+        shape.points for shape in markers_of(report, HEADER)
+    ]
+    assert [shape.scale for shape in shapes] == [
+        shape.scale for shape in markers_of(report, HEADER)
+    ]
+
+
+def points_of(marker: Marker) -> np.ndarray:
+    """Return the points (n, 2) of a marker."""
+    return np.array([(point.x, point.y) for point in marker.points])
+
+
+def markers_of(report: Report, header: Header = HEADER) -> list[Marker]:
+    """Return the markers of a report as a subscriber gets them."""
+    return deserialize_message(serialised_markers(report, header), MarkerArray).markers
 
 
 def test_markers_show_samples_tree_path_and_ends() -> None:
     report = report_on_a_map()
     assert report.result is not None
-    first, *shapes = markers_message(report, STAMP).markers
+    first, *shapes = markers_of(report)
     assert first.action == Marker.DELETEALL
     by_name = {shape.ns: shape for shape in shapes}
     assert {name: shape.type for name, shape in by_name.items()} == {
@@ -168,6 +215,7 @@ def test_markers_show_samples_tree_path_and_ends() -> None:
     assert len(by_name['samples'].points) == len(report.result.samples)
     assert len(by_name['tree'].points) == 2 * (len(report.result.samples) - 1)
     assert len(by_name['path'].points) == len(report.path)
+    assert points_of(by_name['path']).tolist() == report.path.tolist()
     assert by_name['goal'].pose.position.x == report.path[-1][0]
     assert all(shape.header.stamp == STAMP for shape in (first, *shapes))
 
@@ -179,12 +227,12 @@ def test_markers_are_capped() -> None:
     parents = np.arange(-1, len(chain) - 1)
     result = replace(report.result, samples=chain, parents=parents, path=chain)
     report = replace(report, result=result)
-    sizes = {shape.ns: len(shape.points) for shape in markers_message(report, STAMP).markers}
+    sizes = {shape.ns: len(shape.points) for shape in markers_of(report)}
     assert sizes['samples'] == sizes['path'] == MOST_POINTS
     assert MOST_POINTS - 2 <= sizes['tree'] <= MOST_POINTS
 
 
 def test_markers_are_cleared_after_a_failure() -> None:
     request = Request(Pose((0.0, 0.0, 0.0)), Pose((1.0, 1.0, 0.0)), 0.0, 'rrt')
-    markers = markers_message(Report(Outcome.TIMEOUT, '', request, 1.0), STAMP).markers
+    markers = markers_of(Report(Outcome.TIMEOUT, '', request, 1.0))
     assert [marker.action for marker in markers] == [Marker.DELETEALL]

@@ -1,0 +1,236 @@
+"""
+What an answer costs besides its search, and what rclpy itself needs to send one as large.
+
+Two processes answer the same service in turns: the planning node, and a node that does nothing
+but send a ready-made path with as many poses. One client times both, from its call to the answer
+in its hands; how long the search took is in the outcome of the request.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+import os
+from pathlib import Path
+from statistics import median
+import subprocess
+import sys
+from tempfile import TemporaryDirectory
+from test.ros.domain import own_domain
+from test.ros.harness import grid_message, LATCHED, node_process, pose, SOON, stamp_of
+import time
+from typing import NamedTuple
+
+from benchmarks.progress import show
+from benchmarks.ready_made import NAME as READY_MADE
+from benchmarks.sections import Bench, Section, Verdict, verdict_table
+from diagnostic_msgs.msg import DiagnosticArray
+from geometry_msgs.msg import PoseStamped
+from hnr_planner.core import GridSpace, plan
+from hnr_planner.ros.outcome_messages import read_outcome
+from nav_msgs.msg import OccupancyGrid
+from nav_msgs.msg import Path as PathMessage
+from nav_msgs.srv import GetPlan
+import numpy as np
+from numpy.typing import NDArray
+import rclpy
+from rclpy.client import Client
+from rclpy.context import Context
+from rclpy.executors import SingleThreadedExecutor
+from rclpy.node import Node
+from sensor_msgs.msg import PointCloud2
+from visualization_msgs.msg import MarkerArray
+
+#: Cells along a side, cells across a corridor, and side of a cell [m] of the map: a serpentine,
+#: so that a search has more samples than a marker shows.
+SIDE, CORRIDOR, RESOLUTION = 200, 5, 0.1
+START, GOAL, NOWHERE = (0.25, 0.25), (19.75, 19.75), (-1.0, -1.0)
+N_POSES = 2000
+#: With a seed, every request gets the same search and the same path.
+SEED = 1
+#: Time [s] for the planning node to publish everything about a request.
+PAUSE = 0.02
+#: What an answer may cost besides its search, as a multiple of what rclpy needs.
+MOST = 1.5
+#: Pairs of answers that are timed.
+N_PAIRS, N_PAIRS_QUICK = 200, 20
+
+
+class Pair(NamedTuple):
+    """Times [s]: an answer of the planning node, the search in it, and the ready-made answer."""
+
+    answer: float
+    search: float
+    ready_made: float
+
+
+def answers(bench: Bench) -> Section:
+    """Measure what an answer of the node costs."""
+    measured = []
+    for verdict in _measure(N_PAIRS_QUICK if bench.quick else N_PAIRS):
+        show(f'{verdict.what}: {verdict.measured}')
+        measured.append(verdict)
+    return Section('Answers of the node', verdict_table(measured), measured)
+
+
+def _measure(n_pairs: int) -> Iterator[Verdict]:
+    """Measure an empty answer and a long path, without and with subscribers to the pictures."""
+    data = _serpentine()
+    length = plan(GridSpace.from_occupancy(data, RESOLUTION), START, GOAL, seed=SEED).length
+    settings = {'seed': SEED, 'time_limit': 10.0, 'pose_spacing': length / N_POSES}
+    with TemporaryDirectory() as folder, _quiet_domain(folder):
+        with node_process('planner_node', Path(folder) / 'log', **settings) as planner:
+            caller = _Caller()
+            caller.publish(grid_message(data, RESOLUTION))
+            planner.wait_for('map received')
+            for goal in (pose(*NOWHERE), pose(*GOAL)):
+                yield from _compared(caller, goal, n_pairs)
+            caller.close()
+
+
+def _compared(caller: _Caller, goal: PoseStamped, n_pairs: int) -> Iterator[Verdict]:
+    """Measure one request; the ready-made path has as many poses as its answer."""
+    path, _ = caller.ask(caller.planner, goal)
+    n_poses = len(path.poses)
+    with _process('benchmarks.ready_made', str(n_poses)):
+        for listening in (False, True):
+            listener = caller.listener() if listening else None
+            caller.meet_ready_made(goal)
+            pairs = [caller.pair(goal) for _ in range(n_pairs)]
+            if listener is not None:
+                listener.destroy_node()
+            yield _verdict(n_poses, listening, pairs)
+
+
+def _verdict(n_poses: int, listening: bool, pairs: list[Pair]) -> Verdict:
+    besides = median(pair.answer - pair.search for pair in pairs)
+    least = median(pair.ready_made for pair in pairs)
+    search = median(pair.search for pair in pairs)
+    measured = (
+        f'{1e3 * besides:.2f} ms (and {1e3 * search:.1f} ms of search), ready-made '
+        f'{1e3 * least:.2f} ms: {besides / least:.2f} x'
+    )
+    what = f'an answer of {n_poses} poses besides its search, '
+    what += f'pictures {"" if listening else "not "}subscribed to'
+    return Verdict(what, f'{MOST} x', measured, besides <= MOST * least)
+
+
+def _serpentine() -> NDArray[np.int8]:
+    """Draw corridors side by side, each open to the next at the other end."""
+    data = np.zeros((SIDE, SIDE), dtype=np.int8)
+    for number, row in enumerate(range(CORRIDOR, SIDE - CORRIDOR, CORRIDOR)):
+        data[row] = 100
+        door = slice(-CORRIDOR, None) if number % 2 == 0 else slice(CORRIDOR)
+        data[row, door] = 0
+    return data
+
+
+@contextmanager
+def _quiet_domain(folder: str) -> Iterator[None]:
+    """Keep the nodes away from all others, and their logs in a folder."""
+    with own_domain() as domain:
+        os.environ['ROS_DOMAIN_ID'] = str(domain)
+        os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'LOCALHOST'
+        os.environ['ROS_LOG_DIR'] = folder
+        yield
+
+
+@contextmanager
+def _process(*module_and_arguments: str) -> Iterator[None]:
+    """Run a module for the length of a `with` block."""
+    process = subprocess.Popen([sys.executable, '-m', *module_and_arguments])
+    try:
+        yield
+    finally:
+        process.kill()  # rclpy's own executors may miss a gentler signal
+        process.wait()
+
+
+class _Caller:
+    """The client; while it waits for an answer it does nothing else that could delay it."""
+
+    def __init__(self) -> None:
+        self._context = Context()
+        rclpy.init(context=self._context)
+        self._node = Node('caller', context=self._context)
+        self._executor = _executor(self._node)
+        self._reader = Node('reader', context=self._context)
+        self._reading = _executor(self._reader)
+        self._maps = self._reader.create_publisher(OccupancyGrid, '/map', LATCHED)
+        self._search_times: dict[tuple[int, int], float] = {}
+        self._reader.create_subscription(
+            DiagnosticArray, '/hnr_planner/outcome', self._read, LATCHED
+        )
+        self.planner = self._node.create_client(GetPlan, '/hnr_planner/plan')
+        self._ready_made = self._node.create_client(GetPlan, f'/{READY_MADE}/plan')
+
+    def close(self) -> None:
+        """End the client."""
+        rclpy.try_shutdown(context=self._context)
+
+    def publish(self, message: OccupancyGrid) -> None:
+        """Publish the map."""
+        self._maps.publish(message)
+
+    def listener(self) -> Node:
+        """Return a node that takes part in samples and markers, and leaves them unread."""
+        node = Node('listener', context=self._context)
+        for kind, topic in ((PointCloud2, 'samples'), (MarkerArray, 'markers')):
+            node.create_subscription(kind, f'/hnr_planner/{topic}', _ignore, LATCHED, raw=True)
+        return node
+
+    def meet_ready_made(self, goal: PoseStamped) -> None:
+        """Ask for the ready-made path until it comes: before all are known, answers get lost."""
+        deadline = time.monotonic() + SOON
+        while True:
+            with suppress(TimeoutError):
+                self.ask(self._ready_made, goal, patience=1.0)
+                return
+            if time.monotonic() > deadline:
+                raise TimeoutError('the ready-made path does not come')
+
+    def pair(self, goal: PoseStamped) -> Pair:
+        """Time both, one after the other."""
+        path, answer = self.ask(self.planner, goal)
+        search = self._search_time(stamp_of(path))
+        time.sleep(PAUSE)
+        _, ready_made = self.ask(self._ready_made, goal)
+        return Pair(answer, search, ready_made)
+
+    def ask(
+        self, client: Client, goal: PoseStamped, patience: float = SOON
+    ) -> tuple[PathMessage, float]:
+        """Ask for a path and return it, and the time [s] that it took to come."""
+        client.wait_for_service(SOON)
+        request = GetPlan.Request(start=pose(*START), goal=goal)
+        began = time.perf_counter()
+        future = client.call_async(request)
+        # Not spin_until_future_complete: called again and again, it keeps all tasks of before.
+        while not future.done() and time.perf_counter() - began < patience:
+            self._executor.spin_once(patience)
+        elapsed = time.perf_counter() - began
+        if not future.done():
+            raise TimeoutError(f'no answer from {client.srv_name}')
+        return future.result().plan, elapsed
+
+    def _search_time(self, stamp: tuple[int, int]) -> float:
+        """Return how long [s] the search for an answer took."""
+        deadline = time.monotonic() + SOON
+        while stamp not in self._search_times:
+            assert time.monotonic() < deadline, 'no outcome for an answer'
+            self._reading.spin_once(SOON)
+        return self._search_times.pop(stamp)
+
+    def _read(self, message: DiagnosticArray) -> None:
+        _, values = read_outcome(message)
+        self._search_times[stamp_of(message)] = float(values['planning_time'])
+
+
+def _executor(node: Node) -> SingleThreadedExecutor:
+    executor = SingleThreadedExecutor(context=node.context)
+    executor.add_node(node)
+    return executor
+
+
+def _ignore(_message: bytes) -> None:
+    """Take a message and do nothing with it."""

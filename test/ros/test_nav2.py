@@ -1,0 +1,238 @@
+"""The actions and the service that Nav2 asks a planner server for, where nav2_msgs is there."""
+
+from collections.abc import Iterator
+import signal
+from test.brute_force import path_collisions
+from test.ros.harness import (
+    Client,
+    grid_message,
+    maze,
+    NodeProcess,
+    points_of,
+    pose,
+    result_of,
+    two_rooms,
+    until,
+)
+from test.ros.test_msg_docs import examples, fill, OFFICE
+from typing import Any
+
+from action_msgs.msg import GoalStatus
+from hnr_planner.maps import load_map
+from nav_msgs.msg import Path
+import pytest
+from rclpy.action import ActionClient
+import yaml
+
+MISSING = 'nav2_msgs comes with a ROS from apt only'
+actions_of_nav2 = pytest.importorskip('nav2_msgs.action', reason=MISSING)
+services_of_nav2 = pytest.importorskip('nav2_msgs.srv', reason=MISSING)
+ToPose = actions_of_nav2.ComputePathToPose
+ThroughPoses = actions_of_nav2.ComputePathThroughPoses
+IsPathValid = services_of_nav2.IsPathValid
+ROOMS = two_rooms()
+START, MIDDLE, GOAL = (0.5, 0.6), (2.5, 2.5), (4.5, 0.7)
+ACTIONS = {'compute_path_to_pose': ToPose, 'compute_path_through_poses': ThroughPoses}
+
+
+@pytest.fixture(scope='module')
+def actions(client: Client, planner: NodeProcess) -> dict[str, ActionClient]:
+    """Return clients of both actions of a node that has the rooms."""
+    client.publish_map(grid_message(ROOMS))
+    planner.wait_for('map received')
+    made = {name: ActionClient(client.node, kind, name) for name, kind in ACTIONS.items()}
+    assert all(action.wait_for_server(20.0) for action in made.values())
+    return made
+
+
+@pytest.fixture
+def long_search(client: Client, planner: NodeProcess) -> Iterator[dict[str, Any]]:
+    """Put a map to use on which a search takes long, and return the fields of such a goal."""
+    received = planner.log.count('map received')
+    client.publish_map(grid_message(maze()))
+    until(lambda: planner.log.count('map received') > received, 'the maze')
+    client.set_parameters(time_limit=60.0)
+    yield {'start': pose(0.025, 0.025), 'goal': pose(20.0, 20.0), 'use_start': True}
+    if planner.popen.poll() is None:
+        client.set_parameters(time_limit=1.0)
+        client.publish_map(grid_message(ROOMS))
+        until(lambda: planner.log.count('map received') > received + 1, 'the rooms')
+
+
+def to_pose(**changes: Any) -> Any:
+    """Return a goal of the first action, with some fields changed."""
+    usual = {'start': pose(*START), 'goal': pose(*GOAL), 'use_start': True}
+    return ToPose.Goal(**(usual | changes))
+
+
+def through_poses(*goals: tuple[float, float], **changes: Any) -> Any:
+    """Return a goal of the second action."""
+    usual = {'start': pose(*START), 'use_start': True}
+    return ThroughPoses.Goal(goals=[pose(*goal) for goal in goals], **(usual | changes))
+
+
+def send(action: ActionClient, goal: Any) -> Any:
+    """Send a goal and return its handle."""
+    handle = result_of(action.send_goal_async(goal))
+    assert handle.accepted
+    return handle
+
+
+def ask(action: ActionClient, goal: Any) -> tuple[int, Any]:
+    """Send a goal; return its status and its result."""
+    answer = result_of(send(action, goal).get_result_async())
+    return answer.status, answer.result
+
+
+def test_path_to_a_pose(actions: dict[str, ActionClient], client: Client) -> None:
+    status, result = ask(actions['compute_path_to_pose'], to_pose())
+    assert status == GoalStatus.STATUS_SUCCEEDED
+    assert (result.error_code, result.error_msg) == (ToPose.Result.NONE, '')
+    points = points_of(result.path)
+    assert path_collisions(points, ROOMS >= 65, 0.05) == []
+    assert points[0].tolist() == list(START) and points[-1].tolist() == list(GOAL)
+    assert result.planning_time.nanosec > 0
+    assert client.outcome_of(result.path)[1]['algorithm'] == 'hit_and_run_connect'
+
+
+def test_path_through_poses_meets_each(actions: dict[str, ActionClient], client: Client) -> None:
+    status, result = ask(actions['compute_path_through_poses'], through_poses(MIDDLE, GOAL, START))
+    assert status == GoalStatus.STATUS_SUCCEEDED, result.error_msg
+    points = points_of(result.path).tolist()
+    assert path_collisions(points, ROOMS >= 65, 0.05) == []
+    places = [points.index(list(place)) for place in (START, MIDDLE, GOAL)]
+    assert places == sorted(places)
+    assert points[-1] == list(START)
+    assert points_of(client.stamped(client.paths, result.path)).tolist() == points
+
+
+@pytest.mark.parametrize('planner_id', ['rrt', 'hit_and_run'])
+def test_planner_id_names_the_algorithm(
+    actions: dict[str, ActionClient], client: Client, planner_id: str
+) -> None:
+    _, result = ask(actions['compute_path_to_pose'], to_pose(planner_id=planner_id))
+    assert client.outcome_of(result.path)[1]['algorithm'] == planner_id
+
+
+FAILURES = {
+    'INVALID_PLANNER': {'planner_id': 'GridBased'},
+    'TF_ERROR': {'goal': pose(*GOAL, frame='nowhere')},
+    'START_OUTSIDE_MAP': {'start': pose(-1.0, 0.0)},
+    'GOAL_OUTSIDE_MAP': {'goal': pose(0.0, 99.0)},
+    'START_OCCUPIED': {'start': pose(2.5, 0.1)},
+    'GOAL_OCCUPIED': {'goal': pose(2.5, 0.1)},
+    'UNKNOWN': {'goal': pose(float('nan'), 1.0)},
+}
+
+
+@pytest.mark.parametrize('name', FAILURES)
+def test_failure_has_its_code_and_words(actions: dict[str, ActionClient], name: str) -> None:
+    status, result = ask(actions['compute_path_to_pose'], to_pose(**FAILURES[name]))
+    assert status == GoalStatus.STATUS_ABORTED
+    assert result.error_code == getattr(ToPose.Result, name)
+    assert len(result.error_msg) > 20
+    assert result.path.poses == []
+
+
+def test_failures_through_poses(actions: dict[str, ActionClient]) -> None:
+    action, codes = actions['compute_path_through_poses'], ThroughPoses.Result
+    for goals, code in (((), codes.NO_VIAPOINTS_GIVEN), (((2.5, 0.1), GOAL), codes.GOAL_OCCUPIED)):
+        status, result = ask(action, through_poses(*goals))
+        assert status == GoalStatus.STATUS_ABORTED
+        assert result.error_code == code, result.error_msg
+    assert 'leg 1 of 2' in result.error_msg
+
+
+def test_start_of_the_robot_needs_a_transform(actions: dict[str, ActionClient]) -> None:
+    status, result = ask(actions['compute_path_to_pose'], to_pose(use_start=False))
+    assert status == GoalStatus.STATUS_ABORTED
+    assert result.error_code == ToPose.Result.TF_ERROR
+    assert "'base_link'" in result.error_msg
+
+
+def test_time_limit_is_a_timeout(
+    actions: dict[str, ActionClient], client: Client, long_search: dict[str, Any]
+) -> None:
+    client.set_parameters(time_limit=0.2)
+    _, result = ask(actions['compute_path_to_pose'], to_pose(**long_search))
+    assert result.error_code == ToPose.Result.TIMEOUT
+
+
+def test_cancelled_goal_ends_as_cancelled(
+    actions: dict[str, ActionClient], client: Client, long_search: dict[str, Any]
+) -> None:
+    handle = send(actions['compute_path_to_pose'], to_pose(**long_search))
+    client.wait_for_running(1)
+    answer = result_of(handle.cancel_goal_async())
+    assert len(answer.goals_canceling) == 1
+    assert result_of(handle.get_result_async()).status == GoalStatus.STATUS_CANCELED
+    client.wait_for_running(0)
+
+
+def test_newer_goal_takes_the_place_of_the_one_before(
+    actions: dict[str, ActionClient], client: Client, long_search: dict[str, Any]
+) -> None:
+    heard: list[Any] = []
+    action = actions['compute_path_to_pose']
+    first = result_of(action.send_goal_async(to_pose(**long_search), heard.append))
+    client.wait_for_running(1)
+    short = to_pose(**(long_search | {'goal': long_search['start']}))
+    status, _ = ask(action, short)
+    assert status == GoalStatus.STATUS_SUCCEEDED
+    ended = result_of(first.get_result_async())
+    assert ended.status == GoalStatus.STATUS_ABORTED
+    assert 'newer goal' in ended.result.error_msg
+    assert len(heard) == 1, 'feedback'
+    # The other action goes its own way.
+    other = send(actions['compute_path_through_poses'], through_poses((20.0, 20.0)))
+    client.wait_for_running(1)
+    ask(action, short)
+    client.wait_for_running(1)
+    assert client.cancel().message.startswith('1 running')
+    assert result_of(other.get_result_async()).status == GoalStatus.STATUS_ABORTED
+
+
+def test_validity_of_a_path(actions: dict[str, ActionClient], client: Client) -> None:
+    def judged(path: Path) -> tuple[bool, list[int]]:
+        answer = client.call(IsPathValid, '/is_path_valid', IsPathValid.Request(path=path))
+        return answer.is_valid, list(answer.invalid_pose_indices)
+
+    path = ask(actions['compute_path_to_pose'], to_pose())[1].path
+    assert judged(path) == (True, [])
+    path.poses[3].pose.position.x = 2.5
+    path.poses[3].pose.position.y = 0.1
+    valid, numbers = judged(path)
+    assert not valid and 3 in numbers
+    path.header.frame_id = 'odom'
+    assert judged(path) == (False, list(range(len(path.poses))))
+    assert judged(Path()) == (False, [])
+
+
+def test_examples_of_the_pages_work(client: Client, planner: NodeProcess) -> None:
+    """Stands second to last: it puts another map to use."""
+    office = load_map(OFFICE)
+    received = planner.log.count('map received')
+    client.publish_map(grid_message(office.data, office.resolution, office.origin))
+    until(lambda: planner.log.count('map received') > received, 'the office')
+    for name, kind, fields in examples('ros2 action send_goal'):
+        action = ACTIONS[name.removeprefix('/')]
+        assert kind == f'nav2_msgs/action/{action.__name__}'
+        goal = fill(action.Goal(), yaml.safe_load(fields))
+        status, result = ask(ActionClient(client.node, action, name), goal)
+        assert status == GoalStatus.STATUS_SUCCEEDED, result.error_msg
+    ((name, _, fields),) = (e for e in examples('ros2 service call') if 'nav2_msgs' in e[1])
+    request = fill(IsPathValid.Request(), yaml.safe_load(fields))
+    assert client.call(IsPathValid, name, request).is_valid
+
+
+def test_node_ends_in_order_during_a_goal(
+    actions: dict[str, ActionClient],
+    client: Client,
+    planner: NodeProcess,
+    long_search: dict[str, Any],
+) -> None:
+    """Stands last."""
+    send(actions['compute_path_to_pose'], to_pose(**long_search))
+    client.wait_for_running(1)
+    assert planner.end(signal.SIGTERM) == 0
+    assert 'Traceback' not in planner.log
