@@ -28,6 +28,8 @@ ROOMS = (
     'hnr_planner.core.errors',
     'hnr_planner.core.checks',
     'hnr_planner.core.kernels',
+    'hnr_planner.core.borrowed',
+    'hnr_planner.core.streams',
     'hnr_planner.core.spaces',
     'hnr_planner.core.sampling',
     'hnr_planner.core.planning',

@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 import math
 from typing import ClassVar
 
+from hnr_planner.core.borrowed import borrowed
 from hnr_planner.core.checks import check_positive, Floats
 from hnr_planner.core.kernels import kernel
 from hnr_planner.core.planning.lengths import norm
@@ -119,6 +120,8 @@ class RRTSearch:
 @kernel
 def _grow(problem, max_step, rng, vertices, parents, n_vertices, tree, n_iterations):
     """Grow the tree; return vertices, transitions, rejected proposals, and whether it is done."""
+    problem, rng, tree = borrowed(problem), borrowed(rng), borrowed(tree)
+    vertices, parents = borrowed(vertices), borrowed(parents)
     proposal, iterations, rejected = np.empty(len(problem.start)), 0, 0
     for _ in range(PROPOSALS_PER_ITERATION * n_iterations):
         if iterations == n_iterations:

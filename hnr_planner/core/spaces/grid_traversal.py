@@ -96,8 +96,8 @@ def _traverse(free_distance, x, y, dx, dy, t, enough):
     s_column = _crossing(x, dx, column, column_step)
     s_row = _crossing(y, dy, row, row_step)
     per_column, per_row = 1.0 / dx, 1.0 / dy
+    reach = int(free_distance[row, column]) - 1
     while True:
-        reach = int(free_distance[row, column]) - 1
         if reach >= LEAST_REACH:
             while reach >= LEAST_REACH:
                 s_column = _exit(x, per_column, column, column_step, reach)
@@ -112,15 +112,24 @@ def _traverse(free_distance, x, y, dx, dy, t, enough):
         s = min(s_column, s_row)
         if s > enough:
             return max(s, t)
-        next_column = column + column_step if s_column <= s_row else column
-        next_row = row + row_step if s_row <= s_column else row
-        if _blocked(free_distance, column, row, next_column, next_row, beside_column, beside_row):
+        if s_column == s_row:
+            beside = free_distance[row, column + column_step]
+            if beside == 0 or free_distance[row + row_step, column] == 0:
+                return max(s, t)
+        across_column, across_row = s_column == s, s_row == s
+        if across_column:
+            column += column_step
+            s_column = _crossing(x, dx, column, column_step)
+        if across_row:
+            row += row_step
+            s_row = _crossing(y, dy, row, row_step)
+        reach = int(free_distance[row, column]) - 1
+        along_wall = (
+            free_distance[row, column + beside_column] == 0
+            or free_distance[row + beside_row, column] == 0
+        )
+        if reach < 0 or along_wall:
             return max(s, t)
-        if next_column != column:
-            s_column = _crossing(x, dx, next_column, column_step)
-        if next_row != row:
-            s_row = _crossing(y, dy, next_row, row_step)
-        column, row = next_column, next_row
 
 
 @kernel
@@ -140,18 +149,6 @@ def _crossing(x, u, cell, step):
     if step == 0:
         return math.inf
     return (cell + (step > 0) - x) / u
-
-
-@kernel
-def _blocked(free_distance, column, row, next_column, next_row, beside_column, beside_row):
-    """Say whether the step touches a blocked cell: the corner's others and those alongside too."""
-    if free_distance[next_row, next_column] == 0:
-        return True
-    if next_row != row and next_column != column:
-        return free_distance[row, next_column] == 0 or free_distance[next_row, column] == 0
-    if beside_column != 0:
-        return free_distance[next_row, next_column - 1] == 0
-    return beside_row != 0 and free_distance[next_row - 1, next_column] == 0
 
 
 @kernel
