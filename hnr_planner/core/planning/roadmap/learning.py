@@ -6,13 +6,7 @@ it was looks around with the same random numbers as before: what leads to the sa
 has met no change, and there is nothing to learn from it.
 """
 
-from collections.abc import Iterator
-from dataclasses import dataclass
-
-from hnr_planner.core.borrowed import borrowed
 from hnr_planner.core.checks import Floats
-from hnr_planner.core.errors import Cancelled
-from hnr_planner.core.kernels import kernel
 from hnr_planner.core.planning.limits import Event
 from hnr_planner.core.planning.roadmap.corners import (
     distinct,
@@ -20,7 +14,10 @@ from hnr_planner.core.planning.roadmap.corners import (
     find_opening,
     look_around,
 )
-from hnr_planner.core.planning.roadmap.exits import arrive, Exits, exits_of
+from hnr_planner.core.planning.roadmap.draws import place_draws
+from hnr_planner.core.planning.roadmap.exits import arrive, exits_of
+from hnr_planner.core.planning.roadmap.knowledge import Knowledge, LOOKS
+from hnr_planner.core.planning.roadmap.parts import in_parts
 from hnr_planner.core.planning.roadmap.sights import (
     ASK,
     ask_through,
@@ -32,10 +29,8 @@ from hnr_planner.core.planning.roadmap.sights import (
     Sights,
     Ways,
 )
-from hnr_planner.core.planning.rrt import draw_in_box
 from hnr_planner.core.planning.search import NONE
-from hnr_planner.core.sampling.walks import hit_and_run_step
-from hnr_planner.core.spaces.primitives import are_free, contains
+from hnr_planner.core.spaces.primitives import are_free
 from hnr_planner.core.spaces.space import Space
 from hnr_planner.core.streams import stream
 import numpy as np
@@ -45,65 +40,14 @@ from numpy.typing import NDArray
 #: part of these again paths are asked for.
 N_DRAWS = 4096
 GUIDES, SOURCES = 1 / 2, 1 / 16
-#: Proposals for each draw, Hit-and-Run steps to it, and looks around from it.
-PROPOSALS, STEPS, LOOKS = 64, 8, 32
 #: Nodes at most: their ways fill a table.
 NODES_MAX = 3072
 #: How far a node is from the corner that it stands for, in units of the typical clearance.
 AWAY = 1e-3
-#: Rows that are handled between two looks at a cancellation.
-ROWS = 64
 #: Times that nodes are taken to the caller's frame and back until they stay the same.
 ROUNDS = 8
-#: What random streams are for: points to walk from, the walks, the looks.
-ROOTS, PLACE, LOOK = 0, 1, 2
-
-
-@dataclass(frozen=True, eq=False)
-class Knowledge:
-    """
-    What is known of a space, kernel frame.
-
-    Attributes
-    ----------
-    space : Space
-    n_draws : int
-        Slots; a space without free points fills none.
-    age : int
-        How often it was mended.
-    draws : (k, dim)
-        Uniform draws, one for each slot.
-    looks : (k, LOOKS, dim)
-        Where Hit-and-Run steps from each led.
-    nodes : (n, dim)
-        Corners.
-    sights : (n, n), guide_sights (g, n)
-        Which nodes the nodes see, and the first g draws.
-    ways : Ways
-        Shortest ways between the nodes.
-    exits : Exits
-        Where shortest paths leave the first g draws.
-
-    """
-
-    space: Space
-    n_draws: int
-    age: int
-    draws: Floats
-    looks: Floats
-    nodes: Floats
-    sights: Sights
-    guide_sights: Sights
-    ways: Ways
-    exits: Exits
-
-
-def nothing_known(space: Space) -> Knowledge:
-    """Return what is known of a space before a first draw."""
-    none, no_sights = np.empty((0, space.dim)), np.empty((0, 0), dtype=np.uint8)
-    exits = exits_of(none, no_sights.astype(bool), *space.kernel_bounds)
-    looks = np.empty((0, LOOKS, space.dim))
-    return Knowledge(space, 0, 0, none, looks, none, no_sights, no_sights, no_ways(0), exits)
+#: What random streams are for, beside those of the draws: the looks.
+LOOK = 2
 
 
 def learn(
@@ -119,7 +63,7 @@ def learn(
 
     """
     lower, upper = space.kernel_bounds
-    draws, stays = _place_draws(before, space, n_draws, seed, cancel)
+    draws, stays = place_draws(before, space, n_draws, seed, cancel)
     looks, corners, opening = _look_for_corners(before, space, draws, stays, seed, cancel)
     nodes, was = _choose_nodes(before, space, corners)
 
@@ -141,67 +85,7 @@ def learn(
     )
 
 
-def _in_parts(n_rows: int, cancel: Event | None) -> Iterator[slice]:
-    """Yield slices of so many rows, and look at the cancellation before each."""
-    for first in range(0, n_rows, ROWS):
-        if cancel is not None and cancel.is_set():
-            raise Cancelled('the roadmap was cancelled before it was ready')
-        yield slice(first, min(first + ROWS, n_rows))
-
-
-# -- draws and corners ----------------------------------------------------------------------------
-
-
-def _place_draws(
-    before: Knowledge, space: Space, n_draws: int, seed: int, cancel: Event | None
-) -> tuple[Floats, NDArray[np.bool_]]:
-    """
-    Return a uniform draw for each slot (k, dim), and which of them stay where they were (k,).
-
-    Each slot draws afresh. The old draw stays, unless it is not free any more or the new one is
-    where nothing was free: so draws that were uniform on the old space are so on the new one.
-    """
-    roots = np.empty((n_draws, space.dim))
-    n_roots = _free_points(
-        space.data, *space.kernel_bounds, stream(seed, ROOTS, before.age), PROPOSALS, roots
-    )
-    n_filled = n_draws if n_roots > 0 else 0
-    draws, stays = (
-        np.resize(roots[:n_roots], (n_filled, space.dim)),
-        np.zeros(n_filled, dtype=bool),
-    )
-    for part in _in_parts(n_filled, cancel):
-        _walk(space.data, stream(seed, PLACE, before.age, part.start), STEPS, draws[part])
-    old = before.draws[:n_filled]
-    stays[: len(old)] = space is before.space or (
-        are_free(space.data, old) & are_free(before.space.data, draws[: len(old)])
-    )
-    draws[stays] = before.draws[:n_filled][stays[: len(old)]]
-    return draws, stays
-
-
-@kernel
-def _free_points(space, lower, upper, rng, proposals, points):
-    """Fill the rows of ``points`` (k, dim), with so many proposals for each; return how many."""
-    n = 0
-    for _ in range(proposals * len(points)):
-        if n == len(points):
-            break
-        draw_in_box(lower, upper, rng, points[n])
-        if contains(space, points[n]):
-            n += 1
-    return n
-
-
-@kernel
-def _walk(space, rng, steps, points):
-    """Move each of ``points`` (k, dim) by Hit-and-Run steps."""
-    space, rng, points = borrowed(space), borrowed(rng), borrowed(points)
-    y = np.empty(points.shape[1])
-    for k in range(len(points)):
-        for _ in range(steps):
-            hit_and_run_step(space, points[k], rng, y)
-            points[k] = y
+# -- corners ------------------------------------------------------------------------------------
 
 
 def _look_for_corners(
@@ -218,7 +102,7 @@ def _look_for_corners(
     opening = np.full(space.dim, np.inf), np.full(space.dim, -np.inf)
     away = AWAY * space.typical_clearance
     found = [np.empty((0, space.dim))]
-    for part in _in_parts(len(draws), cancel):
+    for part in in_parts(len(draws), cancel):
         look_around(space.data, draws[part], stream(seed, LOOK, part.start), looks[part])
         found.append(find_corners(space.data, draws[part], looks[part], known[part], away))
         if before.age > 0 and space is not before.space:
@@ -292,7 +176,7 @@ def _ask(
     cancel: Event | None,
 ) -> None:
     """Answer what ``sights`` (k, n) ask, and what an opening may have changed."""
-    for part in _in_parts(len(points), cancel):
+    for part in in_parts(len(points), cancel):
         if (opening[0] <= opening[1]).all():
             ask_through(*opening, points[part], others, sights[part])
         look(space.data, points[part], others, sights[part])
@@ -320,7 +204,7 @@ def _mend_ways(
         new = np.empty((0, 2), dtype=np.int64)
     new_length = np.linalg.norm(np.diff(nodes[new], axis=1)[:, 0], axis=1).astype(np.float32)
     edges = edges_of(nodes, nodes, sights)
-    for part in _in_parts(len(nodes), cancel):
+    for part in in_parts(len(nodes), cancel):
         mend(ways, np.arange(part.start, part.stop), edges, sights, new, new_length)
     return ways
 
@@ -337,7 +221,7 @@ def _find_exits(
     """Say through which nodes (g, n) the guides are reached from the first of them."""
     is_exit = np.zeros(guide_sights.shape, dtype=bool)
     edges = edges_of(guides, nodes, guide_sights)
-    for part in _in_parts(min(n_sources, len(guides)), cancel):
+    for part in in_parts(min(n_sources, len(guides)), cancel):
         sources = np.arange(part.start, part.stop)
         arrive(space.data, guides, edges, sources, ways.distance, is_exit)
     return is_exit

@@ -18,7 +18,8 @@ from hnr_planner.core.kernels import kernel
 from hnr_planner.core.planning.hit_and_run_connect import HitAndRunConnect
 from hnr_planner.core.planning.limits import Event
 from hnr_planner.core.planning.roadmap.exits import nodes_seen, way_to_node
-from hnr_planner.core.planning.roadmap.learning import Knowledge, learn, N_DRAWS, nothing_known
+from hnr_planner.core.planning.roadmap.knowledge import Knowledge, nothing_known
+from hnr_planner.core.planning.roadmap.learning import learn, N_DRAWS
 from hnr_planner.core.planning.search import compile_search, NONE, Problem, Search
 from hnr_planner.core.spaces.primitives import sees
 from hnr_planner.core.spaces.space import Space

@@ -1,0 +1,72 @@
+"""Uniform draws of a space, by Hit-and-Run steps; after a change of the space they are mended."""
+
+from hnr_planner.core.borrowed import borrowed
+from hnr_planner.core.checks import Floats
+from hnr_planner.core.kernels import kernel
+from hnr_planner.core.planning.limits import Event
+from hnr_planner.core.planning.roadmap.knowledge import Knowledge
+from hnr_planner.core.planning.roadmap.parts import in_parts
+from hnr_planner.core.planning.rrt import draw_in_box
+from hnr_planner.core.sampling.walks import hit_and_run_step
+from hnr_planner.core.spaces.primitives import are_free, contains
+from hnr_planner.core.spaces.space import Space
+from hnr_planner.core.streams import stream
+import numpy as np
+from numpy.typing import NDArray
+
+#: Proposals for a point to walk from, and Hit-and-Run steps from there to a draw.
+PROPOSALS, STEPS = 64, 8
+#: What random streams are for: points to walk from, the walks.
+ROOTS, PLACE = 0, 1
+
+
+def place_draws(
+    before: Knowledge, space: Space, n_draws: int, seed: int, cancel: Event | None
+) -> tuple[Floats, NDArray[np.bool_]]:
+    """
+    Return a uniform draw for each slot (k, dim), and which of them stay where they were (k,).
+
+    Each slot draws afresh. The old draw stays, unless it is not free any more or the new one is
+    where nothing was free: so draws that were uniform on the old space are so on the new one.
+    """
+    roots = np.empty((n_draws, space.dim))
+    n_roots = _free_points(
+        space.data, *space.kernel_bounds, stream(seed, ROOTS, before.age), PROPOSALS, roots
+    )
+    n_filled = n_draws if n_roots > 0 else 0
+    draws, stays = (
+        np.resize(roots[:n_roots], (n_filled, space.dim)),
+        np.zeros(n_filled, dtype=bool),
+    )
+    for part in in_parts(n_filled, cancel):
+        _walk(space.data, stream(seed, PLACE, before.age, part.start), STEPS, draws[part])
+    old = before.draws[:n_filled]
+    stays[: len(old)] = space is before.space or (
+        are_free(space.data, old) & are_free(before.space.data, draws[: len(old)])
+    )
+    draws[stays] = before.draws[:n_filled][stays[: len(old)]]
+    return draws, stays
+
+
+@kernel
+def _free_points(space, lower, upper, rng, proposals, points):
+    """Fill the rows of ``points`` (k, dim), with so many proposals for each; return how many."""
+    n = 0
+    for _ in range(proposals * len(points)):
+        if n == len(points):
+            break
+        draw_in_box(lower, upper, rng, points[n])
+        if contains(space, points[n]):
+            n += 1
+    return n
+
+
+@kernel
+def _walk(space, rng, steps, points):
+    """Move each of ``points`` (k, dim) by Hit-and-Run steps."""
+    space, rng, points = borrowed(space), borrowed(rng), borrowed(points)
+    y = np.empty(points.shape[1])
+    for k in range(len(points)):
+        for _ in range(steps):
+            hit_and_run_step(space, points[k], rng, y)
+            points[k] = y
