@@ -20,8 +20,8 @@ from hnr_planner.core.planning.simplify import shorten
 from hnr_planner.core.planning.stand_off import path_cost, stand_off
 import numpy as np
 
-#: What random streams are for: to search, to shorten what was found, to shorten a rough path.
-SEARCH, SHORTEN, ROUGH = 0, 1, 3
+#: What random streams are for: to search, to shorten what was found.
+SEARCH, SHORTEN = 0, 1
 
 
 class Attempt(NamedTuple):
@@ -47,12 +47,21 @@ class Attempt(NamedTuple):
     first: FirstSolution | None
 
 
-def attempt(request: Request, number: int, limits: Limits, began: float) -> Attempt:
-    """Search once and better what was found."""
+def attempt(
+    request: Request, number: int, limits: Limits, began: float, *, guided: bool = False
+) -> Attempt:
+    """
+    Search once and better what was found.
+
+    A ``guided`` attempt goes on from the rough path that the space itself knows, where that is
+    shorter than what was found.
+    """
     status, search, path = _search(request, number, limits)
     if status is not PlannerStatus.SOLVED:
         return Attempt(status, search, path, math.inf, None)
     first = FirstSolution(time.perf_counter() - began, path_length(path))
+    if guided and len(path) > 2:
+        path = min(path, _rough_path(request, path), key=path_length)
     if request.simplify and not search.taut and len(path) > 2:
         path = shorten(request.space, path, request.stream(number, SHORTEN), limits)
     path = with_clearance(request, path, limits)
@@ -62,12 +71,7 @@ def attempt(request: Request, number: int, limits: Limits, began: float) -> Atte
 def improve(
     request: Request, best: Attempt, searches: float, limits: Limits, began: float
 ) -> tuple[Attempt, int]:
-    """
-    Look for better paths: the best attempt, and the transitions of all.
-
-    First what the space itself knows of a short way, then so many searches from fresh seeds.
-    """
-    best = _over_rough_path(request, best, limits)
+    """Look for better paths by searches from fresh seeds: the best, and the transitions of all."""
     iterations, number = best.search.iterations, 1
     while number <= searches and len(best.path) > 2 and limits.stop() is None:
         again = attempt(request, number, limits, began)
@@ -114,18 +118,10 @@ def _in_caller_s_frame(request: Request, points: Floats) -> Floats:
     return path
 
 
-def _over_rough_path(request: Request, best: Attempt, limits: Limits) -> Attempt:
-    """Return the attempt with the path over the space's own rough one, where that is better."""
-    if limits.stop() is not None:
-        return best
+def _rough_path(request: Request, otherwise: Floats) -> Floats:
+    """Return the free path (m, dim) that the space knows, caller's frame; or else the other."""
     rough = request.space.rough_path(request.problem.start, request.problem.goal)
     if rough is None:
-        return best
+        return otherwise
     path = _in_caller_s_frame(request, rough)
-    if not request.space.is_path_free(path):
-        return best
-    if request.simplify:
-        path = shorten(request.space, path, request.stream(ROUGH), limits)
-    path = with_clearance(request, path, limits)
-    cost = path_cost(request.space, path, request.clearance)
-    return best._replace(path=path, cost=cost) if cost < best.cost else best
+    return path if request.space.is_path_free(path) else otherwise

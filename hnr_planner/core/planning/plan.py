@@ -125,9 +125,10 @@ def _answer_by_search(
     request: Request, limits: Limits, improve_seconds: float, improve_searches: int, began: float
 ) -> PlanResult:
     """Search, and search again for a shorter path where that is asked for."""
-    best = attempt(request, 0, limits, began)
+    improves = improve_seconds > 0.0 or improve_searches > 0
+    best = attempt(request, 0, limits, began, guided=improves)
     first, iterations = best.first, best.search.iterations
-    if first is not None and (improve_seconds or improve_searches):
+    if first is not None and improves:
         until = began + (improve_seconds or math.inf)
         improving = replace(limits, deadline=min(limits.deadline, until))
         best, iterations = improve(request, best, improve_searches or math.inf, improving, began)

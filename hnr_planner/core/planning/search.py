@@ -18,6 +18,8 @@ from numpy.typing import NDArray
 
 #: No vertex: the parent of a root, or a tree that is not there.
 NONE = -1
+#: How many times longer a table becomes when it is full.
+GROWTH = 8
 
 
 class Problem(NamedTuple):
@@ -137,9 +139,14 @@ def to_goal(problem: Problem, points: Floats) -> Floats:
 
 
 def with_room(array: NDArray[Any], rows: int) -> NDArray[Any]:
-    """Return ``array``, or a copy of at least twice the length when it has fewer than ``rows``."""
+    """
+    Return ``array``, or a copy several times as long when it has fewer than ``rows``.
+
+    Copies are what a clock would have to wait for, so they are rare; room that is not used yet
+    takes no memory.
+    """
     if len(array) >= rows:
         return array
-    larger = np.empty((max(rows, 2 * len(array)), *array.shape[1:]), dtype=array.dtype)
+    larger = np.empty((max(rows, GROWTH * len(array)), *array.shape[1:]), dtype=array.dtype)
     larger[: len(array)] = array
     return larger
