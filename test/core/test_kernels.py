@@ -168,7 +168,8 @@ def test_simplify(islands):
     chain = zigzag()
     kept = np.zeros(60, dtype=np.int64)
     assert_same(*both(shortcuts.skip, GRID.data, islands, chain, kept, 1, True, 100))
-    assert_same(*both(shortcuts.tighten, GRID.data, islands, chain, 1e-8, stream(5), 1000))
+    assert_same(*both(shortcuts.join, GRID.data, islands, chain, stream(5), 100))
+    assert_same(*both(shortcuts.pull, GRID.data, islands, chain, 1, 1e-8, 1000))
 
 
 def zigzag() -> np.ndarray:

@@ -1,9 +1,9 @@
 """
 Ways to shorten a path by visibility, as kernels: each only ever shortens, and counts its tests.
 
-``skip``: a vertex is followed by the last one that it sees. ``tighten``: random points of the path
-are joined; each vertex slides along its two segments until an obstacle is in the way, and what
-corner is left there is cut off, so that the path comes to lie taut around obstacles.
+``skip``: a vertex is followed by the last one that it sees. ``join``: random points of the path
+are joined. ``pull``: each vertex slides along its two segments until an obstacle is in the way,
+and what corner is left there is cut off, so that the path comes to lie taut around obstacles.
 
 With ``islands`` the path stays in its homology class: nothing is replaced by what passes one of
 them on the other side.
@@ -19,8 +19,6 @@ import numpy as np
 
 #: Looks from one vertex, each halfway to the one before, at most.
 LOOKS_MAX = 64
-#: Random pairs of points that ``tighten`` tries to join, for each segment of the path.
-TRIES = 5
 #: Halvings of the way on which a vertex slides or its corner is cut.
 HALVINGS = 12
 #: A corner is cut for a gain of more than this part of its two segments.
@@ -63,16 +61,19 @@ def _may_join(space, islands, points, i, j):
 
 
 @kernel
-def tighten(space, islands, points, margin, rng, tests_max):
-    """Join random points of the path, then slide and cut each vertex: (path, tests)."""
+def join(space, islands, points, rng, n_pairs):
+    """Try to join random pairs of points of the path directly, by three tests each: the path."""
     space, islands, rng = borrowed(space), borrowed(islands), borrowed(rng)
-    tests = 0
-    for _ in range(TRIES * (len(points) - 1)):
-        if tests + 3 > tests_max:
-            break
+    for _ in range(n_pairs):
         points = _join_two(space, islands, points, rng)
-        tests += 3
-    k = 1
+    return points
+
+
+@kernel
+def pull(space, islands, points, k, margin, tests_max):
+    """Slide and cut the vertices from ``k`` on: (path, vertex to go on from, tests)."""
+    space, islands = borrowed(space), borrowed(islands)
+    tests = 0
     while k < len(points) - 1 and tests + 1 + 3 * HALVINGS <= tests_max:
         if _may_join(space, islands, points, k - 1, k + 1):
             points = _replaced(points, k, points[:0])
@@ -84,7 +85,7 @@ def tighten(space, islands, points, margin, rng, tests_max):
         tests += 1 + 3 * HALVINGS
         points = _replaced(points, k, corner)
         k += len(corner)
-    return points, tests
+    return points, k, tests
 
 
 @kernel

@@ -13,17 +13,17 @@ from hnr_planner.core.errors import RequestError
 from hnr_planner.core.planning.homology import Islands
 from hnr_planner.core.planning.lengths import path_length
 from hnr_planner.core.planning.limits import Limits
-from hnr_planner.core.planning.shortcuts import skip, tighten
+from hnr_planner.core.planning.shortcuts import join, pull, skip
 from hnr_planner.core.spaces.space import Space
 from hnr_planner.core.streams import Stream, stream
 import numpy as np
 from numpy.typing import ArrayLike
 
-#: Visibility tests for one path; how many go by between two looks at the clock, more for long
-#: paths, where a pass over all vertices takes as many.
+#: Visibility tests for one path, and how many go by between two looks at the clock.
 TESTS_MAX = 100_000
-TESTS_IN_A_BATCH = 2000
-TESTS_FOR_A_VERTEX = 60
+TESTS_IN_A_BATCH = 500
+#: Random pairs of points to join for each segment of a path, and between two looks at the clock.
+PAIRS, PAIRS_IN_A_BATCH = 5, 100
 #: Paths with more vertices are first passed over with a few looks from each, again and again while
 #: that leaves less than this part of them.
 MANY = 256
@@ -108,8 +108,7 @@ def shorten(
     points, tests = skip_vertices(space, points, limits, tests_max, islands)
     length, gain = path_length(points), math.inf
     while len(points) > 2 and gain > LEAST_GAIN * length and limits.stop() is None:
-        batch = min(max(TESTS_IN_A_BATCH, TESTS_FOR_A_VERTEX * len(points)), tests_max - tests)
-        points, used = tighten(space.data, islands, points, space.margin, rng, batch)
+        points, used = _tighten(space, points, rng, islands, limits, tests_max - tests)
         tests += used
         gain, length = length - path_length(points), path_length(points)
     shorter = space.from_kernel(points)
@@ -117,6 +116,28 @@ def shorten(
     if path_length(shorter) < SHORTER * path_length(path) and space.is_path_free(shorter):
         return shorter
     return path
+
+
+def _tighten(
+    space: Space,
+    points: Floats,
+    rng: Stream,
+    islands: Islands | None,
+    limits: Limits,
+    tests_max: int,
+) -> tuple[Floats, int]:
+    """Join random points of a path, then pull it taut at each vertex, within limits: likewise."""
+    pairs, tests = min(PAIRS * (len(points) - 1), tests_max // 3), 0
+    while pairs > 0 and limits.stop() is None:
+        batch = min(pairs, PAIRS_IN_A_BATCH)
+        points = join(space.data, islands, points, rng, batch)
+        pairs, tests = pairs - batch, tests + 3 * batch
+    k, used = 1, 1
+    while used > 0 and limits.stop() is None:
+        batch = min(TESTS_IN_A_BATCH, tests_max - tests)
+        points, k, used = pull(space.data, islands, points, k, space.margin, batch)
+        tests += used
+    return points, tests
 
 
 def skip_vertices(
@@ -159,5 +180,6 @@ def _pass_over(
 def compile_shorten(space: Space, points: Floats, islands: Islands | None = None) -> None:
     """Compile what ``shorten`` runs on this kind of space, without doing anything."""
     skip(space.data, islands, points, np.zeros(1, dtype=np.int64), 1, True, 0)
-    tighten(space.data, islands, points[:1], space.margin, stream(0), 0)
+    join(space.data, islands, points, stream(0), 0)
+    pull(space.data, islands, points, 1, space.margin, 0)
     path_length(points)

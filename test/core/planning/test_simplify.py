@@ -10,8 +10,7 @@ from test.laws import maps
 
 from hnr_planner.core import GridSpace, plan, RequestError, simplify
 from hnr_planner.core.planning.lengths import path_length
-from hnr_planner.core.planning.shortcuts import skip, tighten
-from hnr_planner.core.streams import stream
+from hnr_planner.core.planning.shortcuts import pull, skip
 import numpy as np
 from numpy.typing import NDArray
 import pytest
@@ -96,7 +95,7 @@ def test_the_number_of_visibility_tests_is_never_exceeded(budget: int, every: bo
     points = SPACE.to_kernel(chain(3))
     kept = np.zeros(len(points), dtype=np.int64)
     assert skip(SPACE.data, None, points, kept, 1, every, budget)[1] <= budget
-    assert tighten(SPACE.data, None, points, SPACE.margin, stream(0), budget)[1] <= budget
+    assert pull(SPACE.data, None, points, 1, SPACE.margin, budget)[2] <= budget
 
 
 COMPILING = """
