@@ -48,24 +48,44 @@ class Attempt(NamedTuple):
 
 
 def attempt(
-    request: Request, number: int, limits: Limits, began: float, *, guided: bool = False
+    request: Request,
+    number: int,
+    limits: Limits,
+    began: float,
+    improving: Limits | None = None,
 ) -> Attempt:
     """
     Search once and better what was found.
 
-    A ``guided`` attempt goes on from the rough path that the space itself knows, where that is
-    shorter than what was found.
+    With limits for ``improving`` there is a second way, the rough path that the space itself
+    knows: the shorter of the two is bettered first, the other one while these limits allow.
     """
     status, search, path = _search(request, number, limits)
     if status is not PlannerStatus.SOLVED:
         return Attempt(status, search, path, math.inf, None)
     first = FirstSolution(time.perf_counter() - began, path_length(path))
-    if guided and len(path) > 2:
-        path = min(path, _rough_path(request, path), key=path_length)
+    if len(path) == 2 or improving is None:
+        return Attempt(status, search, *_bettered(request, number, search, path, limits), first)
+    shorter, *longer = sorted([path, *_rough_paths(request)], key=path_length)
+    best = _bettered(request, number, search, shorter, limits)
+    for way in longer:
+        if improving.stop() is None:
+            best = min(best, _bettered(request, number, search, way, improving), key=_cost)
+    return Attempt(status, search, *best, first)
+
+
+def _bettered(
+    request: Request, number: int, search: Search, path: Floats, limits: Limits
+) -> tuple[Floats, float]:
+    """Return a path (m, dim) shortened and moved away from walls as was asked, and its cost."""
     if request.simplify and not search.taut and len(path) > 2:
         path = shorten(request.space, path, request.stream(number, SHORTEN), limits)
     path = with_clearance(request, path, limits)
-    return Attempt(status, search, path, path_cost(request.space, path, request.clearance), first)
+    return path, path_cost(request.space, path, request.clearance)
+
+
+def _cost(bettered: tuple[Floats, float]) -> float:
+    return bettered[1]
 
 
 def improve(
@@ -118,10 +138,10 @@ def _in_caller_s_frame(request: Request, points: Floats) -> Floats:
     return path
 
 
-def _rough_path(request: Request, otherwise: Floats) -> Floats:
-    """Return the free path (m, dim) that the space knows, caller's frame; or else the other."""
+def _rough_paths(request: Request) -> list[Floats]:
+    """Return the free path (m, dim) that the space knows, caller's frame, if any."""
     rough = request.space.rough_path(request.problem.start, request.problem.goal)
     if rough is None:
-        return otherwise
+        return []
     path = _in_caller_s_frame(request, rough)
-    return path if request.space.is_path_free(path) else otherwise
+    return [path] if request.space.is_path_free(path) else []

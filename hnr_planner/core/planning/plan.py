@@ -125,12 +125,13 @@ def _answer_by_search(
     request: Request, limits: Limits, improve_seconds: float, improve_searches: int, began: float
 ) -> PlanResult:
     """Search, and search again for a shorter path where that is asked for."""
-    improves = improve_seconds > 0.0 or improve_searches > 0
-    best = attempt(request, 0, limits, began, guided=improves)
-    first, iterations = best.first, best.search.iterations
-    if first is not None and improves:
+    improving = None
+    if improve_seconds or improve_searches:
         until = began + (improve_seconds or math.inf)
         improving = replace(limits, deadline=min(limits.deadline, until))
+    best = attempt(request, 0, limits, began, improving)
+    first, iterations = best.first, best.search.iterations
+    if first is not None and improving is not None:
         best, iterations = improve(request, best, improve_searches or math.inf, improving, began)
         limits.cut = limits.cut or improving.cut
     samples = request.space.from_kernel(best.search.samples)
