@@ -58,12 +58,9 @@ def _optimized_for(seconds: float) -> SolverOf:
 
 @contextmanager
 def _optimized(problem: Problem) -> Iterator[Solver]:
-    """Use what is left of a wavefront's time after the first path to shorten it."""
-    with _plan(algorithm='auto')(problem) as plain, search_with(wavefront)(problem) as waves:
+    """Look for a shorter path until a wavefront would have been ready."""
+    with search_with(wavefront)(problem) as waves:
         requests = np.resize(problem.requests, (CALIBRATION, 2, 2))
-        spent, allowed = (
-            median(run.seconds for run in solve(requests, 0)) for solve in (plain, waves)
-        )
-    left = USED * max(allowed, LEAST_TIME) - spent
-    with (_optimized_for(left) if left > 0.0 else _plan(algorithm='auto'))(problem) as solve:
+        allowed = median(run.seconds for run in waves(requests, 0))
+    with _optimized_for(USED * max(allowed, LEAST_TIME))(problem) as solve:
         yield solve
