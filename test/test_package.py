@@ -30,6 +30,8 @@ ROOMS = (
     'hnr_planner.core.kernels',
     'hnr_planner.core.borrowed',
     'hnr_planner.core.streams',
+    'hnr_planner.core.lengths',
+    'hnr_planner.core.trees',
     'hnr_planner.core.spaces',
     'hnr_planner.core.sampling',
     'hnr_planner.core.planning',

@@ -55,7 +55,7 @@ def way_out(
     within = lengths[order] <= radius / space.resolution
     obstacles = GridSpace.from_blocked(surroundings.obstacles)
     for point in exits.points[order[within]]:
-        if obstacles.first_blocked_segment(np.stack([surroundings.here, point])) is None:
+        if obstacles.is_path_free(np.stack([surroundings.here, point])):
             return space.from_kernel(point + surroundings.corner + space.frame.RIM)
     return None
 

@@ -14,6 +14,7 @@ import time
 from hnr_planner.core.checks import check_count, Floats
 from hnr_planner.core.errors import RequestError
 from hnr_planner.core.kernels import kernel
+from hnr_planner.core.lengths import path_length
 from hnr_planner.core.planning.class_graph import (
     class_graph,
     ClassGraph,
@@ -25,7 +26,6 @@ from hnr_planner.core.planning.class_graph import (
 )
 from hnr_planner.core.planning.hit_and_run_connect import HitAndRunConnect
 from hnr_planner.core.planning.homology import islands_at, signature
-from hnr_planner.core.planning.lengths import path_length
 from hnr_planner.core.planning.limits import Limits
 from hnr_planner.core.planning.request import Request
 from hnr_planner.core.planning.result import PlannerStatus, PlanResult
@@ -103,7 +103,7 @@ def _find(
     for number, points in enumerate(found):
         rough = space.from_kernel(points)
         rough[0], rough[-1] = path[0], path[-1]
-        if limits.stop() is not None or space.first_blocked_segment(rough) is not None:
+        if limits.stop() is not None or not space.is_path_free(rough):
             continue
         rng = request.stream(number, EXPLORE, 0)
         taut = shorten(space, rough, rng, limits, islands=islands)

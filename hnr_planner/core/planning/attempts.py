@@ -11,7 +11,7 @@ import time
 from typing import NamedTuple
 
 from hnr_planner.core.checks import Floats
-from hnr_planner.core.planning.lengths import path_length
+from hnr_planner.core.lengths import path_length
 from hnr_planner.core.planning.limits import Limits
 from hnr_planner.core.planning.request import Request
 from hnr_planner.core.planning.result import FirstSolution, PlannerStatus

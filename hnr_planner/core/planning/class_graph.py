@@ -14,10 +14,10 @@ from typing import NamedTuple
 
 from hnr_planner.core.checks import Floats
 from hnr_planner.core.kernels import kernel
+from hnr_planner.core.lengths import distance
 from hnr_planner.core.planning.homology import crossings, Islands
-from hnr_planner.core.planning.lengths import norm
-from hnr_planner.core.planning.search import branch, NONE
 from hnr_planner.core.spaces.primitives import sees
+from hnr_planner.core.trees import branch, NONE
 import numpy as np
 from numpy.typing import NDArray
 
@@ -115,9 +115,9 @@ def _search(graph, islands, n_classes):
             is_new = _is_new(known, n_known, near, passed)
             if is_new and not _crosses_itself(points, nodes, parents, label, near):
                 nodes[n_labels], parents[n_labels] = near, label
-                lengths[n_labels] = lengths[label] + norm(points[near] - points[node])
+                lengths[n_labels] = lengths[label] + distance(points[node], points[near])
                 signatures[n_labels] = passed
-                left = norm(points[GOAL] - points[near])
+                left = distance(points[near], points[GOAL])
                 heappush(waiting, (lengths[n_labels] + left, n_labels))
                 n_labels += 1
     found = n_known[GOAL]

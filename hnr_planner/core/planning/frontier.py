@@ -11,8 +11,8 @@ from typing import NamedTuple
 
 from hnr_planner.core.checks import Floats
 from hnr_planner.core.kernels import kernel
-from hnr_planner.core.planning.search import NONE
 from hnr_planner.core.streams import uniform
+from hnr_planner.core.trees import NONE
 import numpy as np
 from numpy.typing import NDArray
 

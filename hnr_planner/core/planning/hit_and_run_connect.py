@@ -20,11 +20,12 @@ from hnr_planner.core.planning.frontier import (
     empty_frontier,
     Frontier,
 )
-from hnr_planner.core.planning.search import NONE, Problem, reaches_goal, with_room
+from hnr_planner.core.planning.search import Problem, reaches_goal, with_room
 from hnr_planner.core.planning.two_trees import TwoTreeSearch
 from hnr_planner.core.sampling.walks import draw_between, draw_direction
 from hnr_planner.core.spaces.primitives import component, leave, sees
 from hnr_planner.core.streams import Stream, uniform
+from hnr_planner.core.trees import NONE
 import numpy as np
 from numpy.typing import NDArray
 

@@ -8,7 +8,7 @@ from hnr_planner.core.errors import RequestError
 from hnr_planner.core.kernels import kernel
 from hnr_planner.core.planning.algorithms import make_planner
 from hnr_planner.core.planning.result import PlannerStatus
-from hnr_planner.core.planning.search import Planner, Problem, reaches_goal
+from hnr_planner.core.planning.search import make_problem, Planner, Problem, reaches_goal
 from hnr_planner.core.spaces.primitives import component
 from hnr_planner.core.spaces.space import Space
 from hnr_planner.core.streams import Stream, stream
@@ -69,18 +69,6 @@ def check_request(
     """Return the request that a caller's arguments make, or raise RequestError."""
     start, goal = check_point('start', start, space.dim), check_point('goal', goal, space.dim)
     goal_radius = check_number('goal_radius', goal_radius, 0.0)
-    lower, upper = space.kernel_bounds
-    problem = Problem(
-        space=space.data,
-        lower=lower,
-        upper=upper,
-        start=space.to_kernel(start),
-        goal=space.to_kernel(goal),
-        goal_radius=goal_radius / space.scale,
-        margin=space.margin,
-        clearance=space.typical_clearance,
-        scale=space.scale,
-    )
     planner = make_planner(algorithm, settings)
     return Request(
         space,
@@ -91,7 +79,7 @@ def check_request(
         bool(simplify),
         _check_clearance(space, planner, simplify),
         check_seed(seed),
-        problem,
+        make_problem(space, start, goal, goal_radius),
     )
 
 

@@ -12,11 +12,12 @@ from typing import ClassVar
 from hnr_planner.core.borrowed import borrowed
 from hnr_planner.core.checks import check_positive, Floats
 from hnr_planner.core.kernels import kernel
-from hnr_planner.core.planning.lengths import norm
+from hnr_planner.core.lengths import norm
 from hnr_planner.core.planning.nearest import BoxTree, empty_box_tree, grown, insert, nearest
-from hnr_planner.core.planning.search import branch, Problem, reaches_goal, to_goal, with_room
+from hnr_planner.core.planning.search import Problem, reaches_goal, to_goal, with_room
 from hnr_planner.core.spaces.primitives import contains, contains_around, leave
 from hnr_planner.core.streams import Stream, uniform
+from hnr_planner.core.trees import branch
 import numpy as np
 from numpy.typing import NDArray
 

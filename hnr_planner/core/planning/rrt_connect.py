@@ -14,13 +14,14 @@ from typing import ClassVar, NamedTuple
 from hnr_planner.core.borrowed import borrowed
 from hnr_planner.core.checks import check_positive, Floats
 from hnr_planner.core.kernels import kernel
-from hnr_planner.core.planning.lengths import norm
+from hnr_planner.core.lengths import norm
 from hnr_planner.core.planning.nearest import BoxTree, empty_box_tree, grown, insert, nearest
 from hnr_planner.core.planning.rrt import draw_in_box
-from hnr_planner.core.planning.search import NONE, Problem, reaches_goal, with_room
+from hnr_planner.core.planning.search import Problem, reaches_goal, with_room
 from hnr_planner.core.planning.two_trees import TwoTreeSearch
 from hnr_planner.core.spaces.primitives import component, sees
 from hnr_planner.core.streams import Stream
+from hnr_planner.core.trees import NONE
 import numpy as np
 from numpy.typing import NDArray
 

@@ -12,12 +12,11 @@ from typing import Any, NamedTuple, Protocol
 from hnr_planner.core.checks import Floats
 from hnr_planner.core.kernels import kernel
 from hnr_planner.core.spaces.primitives import sees
+from hnr_planner.core.spaces.space import Space
 from hnr_planner.core.streams import Stream, stream
 import numpy as np
 from numpy.typing import NDArray
 
-#: No vertex: the parent of a root, or a tree that is not there.
-NONE = -1
 #: How many times longer a table becomes when it is full.
 GROWTH = 8
 
@@ -54,6 +53,22 @@ class Problem(NamedTuple):
     margin: float
     clearance: float
     scale: float
+
+
+def make_problem(space: Space, start: Floats, goal: Floats, goal_radius: float) -> Problem:
+    """Return the problem of going from start to goal (dim,) in a space, caller's frame."""
+    lower, upper = space.kernel_bounds
+    return Problem(
+        space=space.data,
+        lower=lower,
+        upper=upper,
+        start=space.to_kernel(start),
+        goal=space.to_kernel(goal),
+        goal_radius=goal_radius / space.scale,
+        margin=space.margin,
+        clearance=space.typical_clearance,
+        scale=space.scale,
+    )
 
 
 @kernel
@@ -118,19 +133,6 @@ def compile_search(planner: Planner, problem: Problem) -> None:
     search = planner.start(problem, stream(0))
     for _ in range(2):
         search.advance(0)
-
-
-@kernel
-def branch(samples, parents, k):
-    """Return the samples (m, dim) from the root of sample ``k`` to ``k``; (0, dim) for NONE."""
-    length, row = 0, k
-    while row != NONE:
-        length, row = length + 1, parents[row]
-    points, row = np.empty((length, samples.shape[1])), k
-    for i in range(length - 1, -1, -1):
-        points[i] = samples[row]
-        row = parents[row]
-    return points
 
 
 def to_goal(problem: Problem, points: Floats) -> Floats:

@@ -11,8 +11,8 @@ them on the other side.
 
 from hnr_planner.core.borrowed import borrowed
 from hnr_planner.core.kernels import kernel
+from hnr_planner.core.lengths import norm
 from hnr_planner.core.planning.homology import crossings, loop_signature, signature
-from hnr_planner.core.planning.lengths import norm
 from hnr_planner.core.spaces.primitives import sees
 from hnr_planner.core.streams import uniform
 import numpy as np

@@ -10,8 +10,8 @@ import time
 
 from hnr_planner.core.checks import check_count, check_number, check_points, check_seed, Floats
 from hnr_planner.core.errors import RequestError
+from hnr_planner.core.lengths import path_length
 from hnr_planner.core.planning.homology import Islands
-from hnr_planner.core.planning.lengths import path_length
 from hnr_planner.core.planning.limits import Limits
 from hnr_planner.core.planning.shortcuts import join, pull, skip
 from hnr_planner.core.spaces.space import Space

@@ -12,12 +12,12 @@ from typing import Any, NamedTuple
 
 from hnr_planner.core.checks import Floats
 from hnr_planner.core.kernels import kernel
+from hnr_planner.core.lengths import distance, path_length
 from hnr_planner.core.planning.homology import (
     crossings,
     Islands,
     loop_signature,
 )
-from hnr_planner.core.planning.lengths import distance, path_length
 from hnr_planner.core.planning.limits import Limits
 from hnr_planner.core.spaces.clearance import clearance_within, FARTHEST_WALL
 from hnr_planner.core.spaces.primitives import sees
@@ -86,7 +86,7 @@ def stand_off(
     moved = space.from_kernel(points)
     moved[0], moved[-1] = path[0], path[-1]
     is_better = segment_costs(wish, points).sum() < segment_costs(wish, before).sum()
-    return moved if is_better and space.first_blocked_segment(moved) is None else path
+    return moved if is_better and space.is_path_free(moved) else path
 
 
 def _move_all(

@@ -11,8 +11,9 @@ from typing import ClassVar
 
 from hnr_planner.core.checks import Floats
 from hnr_planner.core.kernels import kernel
-from hnr_planner.core.planning.search import branch, NONE, Problem, to_goal
+from hnr_planner.core.planning.search import Problem, to_goal
 from hnr_planner.core.streams import Stream
+from hnr_planner.core.trees import branch, NONE
 import numpy as np
 from numpy.typing import NDArray
 

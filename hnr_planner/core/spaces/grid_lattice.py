@@ -13,8 +13,10 @@ from typing import NamedTuple
 from hnr_planner.core.borrowed import borrowed
 from hnr_planner.core.checks import Floats
 from hnr_planner.core.kernels import kernel
+from hnr_planner.core.lengths import distance
 from hnr_planner.core.spaces.grid_traversal import GridData
 from hnr_planner.core.spaces.primitives import sees
+from hnr_planner.core.trees import branch, NONE
 import numpy as np
 from numpy.typing import NDArray
 
@@ -25,7 +27,6 @@ BLOCKS_MAX = 128
 RINGS = 3
 #: Steps to the blocks around, (rows, columns); the second four lead back.
 STEPS = ((0, 1), (1, 1), (1, 0), (1, -1), (0, -1), (-1, -1), (-1, 0), (-1, 1))
-NONE = -1
 
 
 class Lattice(NamedTuple):
@@ -106,22 +107,23 @@ def rough_path(grid, lattice, start, goal):
     for k in _seen_nodes(grid, lattice, goal):
         ends[k] = True
     for k in _seen_nodes(grid, lattice, start):
-        length[k] = _apart(start, nodes[k])
-        heappush(waiting, (length[k] + _apart(nodes[k], goal), k))
+        length[k] = distance(start, nodes[k])
+        heappush(waiting, (length[k] + distance(nodes[k], goal), k))
     while len(waiting) > 0:
         least, k = heappop(waiting)
-        left = _apart(nodes[k], goal)
+        left = distance(nodes[k], goal)
         if least > length[k] + left:
             continue  # a shorter way to this node has come by
         if ends[k]:
-            return _traced(nodes, parents, k, start, goal)
+            way = branch(nodes, parents, k)
+            return np.concatenate((start.reshape((1, 2)), way, goal.reshape((1, 2))))
         for step in range(len(STEPS)):
             if lattice.joined[k, step]:
                 near = _block_at(k, step, lattice.columns, n)
-                through = length[k] + _apart(nodes[k], nodes[near])
+                through = length[k] + distance(nodes[k], nodes[near])
                 if through < length[near]:
                     length[near], parents[near] = through, k
-                    heappush(waiting, (through + _apart(nodes[near], goal), near))
+                    heappush(waiting, (through + distance(nodes[near], goal), near))
     return np.empty((0, 2))
 
 
@@ -140,22 +142,3 @@ def _seen_nodes(grid, lattice, x):
         if len(seen) > 0:
             break
     return seen
-
-
-@kernel
-def _traced(nodes, parents, last, start, goal):
-    """Path from the start over the parents of the last node to the goal."""
-    n, k = 0, last
-    while k != NONE:
-        n, k = n + 1, parents[k]
-    path, k = np.empty((n + 2, 2)), last
-    path[0], path[n + 1] = start, goal
-    for i in range(n, 0, -1):
-        path[i] = nodes[k]
-        k = parents[k]
-    return path
-
-
-@kernel
-def _apart(a, b):
-    return math.hypot(a[0] - b[0], a[1] - b[1])

@@ -4,7 +4,7 @@ from typing import Any
 
 from hnr_planner.core import GridSpace
 from hnr_planner.core.planning.algorithms import make_planner
-from hnr_planner.core.planning.search import Problem
+from hnr_planner.core.planning.search import make_problem
 from hnr_planner.core.streams import stream
 import numpy as np
 from numpy.typing import NDArray
@@ -19,16 +19,6 @@ def start_search(
 ):
     """Start a search in cells, from the lower left to the upper right cell."""
     space = GridSpace.from_blocked(blocked)
-    lower, upper = space.kernel_bounds
-    problem = Problem(
-        space.data,
-        lower,
-        upper,
-        lower + 0.5,
-        upper - 0.5,
-        goal_radius,
-        space.margin,
-        space.typical_clearance,
-        space.scale,
-    )
+    lower, upper = space.bounds
+    problem = make_problem(space, lower + 0.5, upper - 0.5, goal_radius)
     return make_planner(algorithm, settings).start(problem, stream(seed))

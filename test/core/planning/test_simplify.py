@@ -9,7 +9,7 @@ from test.brute_force import path_collisions
 from test.laws import maps
 
 from hnr_planner.core import GridSpace, plan, RequestError, simplify
-from hnr_planner.core.planning.lengths import path_length
+from hnr_planner.core.lengths import path_length
 from hnr_planner.core.planning.shortcuts import pull, skip
 import numpy as np
 from numpy.typing import NDArray

@@ -5,7 +5,7 @@ from test.brute_force import path_collisions
 from test.laws import maps
 
 from hnr_planner.core import GridSpace, plan, simplify
-from hnr_planner.core.planning.lengths import path_length
+from hnr_planner.core.lengths import path_length
 from hnr_planner.core.spaces.grid_lattice import BLOCKS_MAX, SIDE_MIN
 from hnr_planner.maps import spiral
 from hypothesis import given, settings

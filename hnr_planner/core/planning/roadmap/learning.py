@@ -29,10 +29,10 @@ from hnr_planner.core.planning.roadmap.sights import (
     Sights,
     Ways,
 )
-from hnr_planner.core.planning.search import NONE
 from hnr_planner.core.spaces.primitives import are_free
 from hnr_planner.core.spaces.space import Space
 from hnr_planner.core.streams import stream
+from hnr_planner.core.trees import NONE
 import numpy as np
 from numpy.typing import NDArray
 

@@ -20,10 +20,11 @@ from hnr_planner.core.planning.limits import Event
 from hnr_planner.core.planning.roadmap.exits import nodes_seen, way_to_node
 from hnr_planner.core.planning.roadmap.knowledge import Knowledge, nothing_known
 from hnr_planner.core.planning.roadmap.learning import learn, N_DRAWS
-from hnr_planner.core.planning.search import compile_search, NONE, Problem, Search
+from hnr_planner.core.planning.search import compile_search, make_problem, Problem, Search
 from hnr_planner.core.spaces.primitives import sees
 from hnr_planner.core.spaces.space import Space
 from hnr_planner.core.streams import Stream, stream
+from hnr_planner.core.trees import branch, NONE
 import numpy as np
 from numpy.typing import NDArray
 
@@ -180,18 +181,8 @@ def _compile(space: Space) -> None:
     for_nodes = nothing.nodes, nothing.ways, nothing.exits
     shortest_path(space.data, *for_nodes, lower[np.newaxis], upper[np.newaxis])
     way_to_node(space.data, nothing.nodes, nothing.exits, lower, rng)
-    problem = Problem(
-        space=space.data,
-        lower=lower,
-        upper=upper,
-        start=lower,
-        goal=upper,
-        goal_radius=0.0,
-        margin=space.margin,
-        clearance=space.typical_clearance,
-        scale=space.scale,
-    )
-    compile_search(HitAndRunConnect(), problem)
+    start, goal = space.bounds
+    compile_search(HitAndRunConnect(), make_problem(space, start, goal, goal_radius=0.0))
 
 
 def _same_frame(a: Space, b: Space) -> bool:
@@ -225,14 +216,4 @@ def shortest_path(space, nodes, ways, exits, ahead, back):
         first = ways.previous[last, first]
     while first != last and sees(space, nodes[ways.previous[first, last]], back[-1]):
         last = ways.previous[first, last]
-    end, node = len(ahead) + 1, last
-    while node != first:
-        node = ways.previous[first, node]
-        end += 1
-    path = np.empty((end + len(back), nodes.shape[1]))
-    path[: len(ahead)], path[end:] = ahead, back[::-1]
-    node = last
-    for k in range(end - 1, len(ahead) - 1, -1):
-        path[k] = nodes[node]
-        node = ways.previous[first, node]
-    return path
+    return np.concatenate((ahead, branch(nodes, ways.previous[first], last), back[::-1]))

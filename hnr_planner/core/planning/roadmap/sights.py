@@ -13,8 +13,8 @@ from typing import NamedTuple
 from hnr_planner.core.borrowed import borrowed
 from hnr_planner.core.checks import Floats
 from hnr_planner.core.kernels import kernel
-from hnr_planner.core.planning.search import NONE
 from hnr_planner.core.spaces.primitives import sees
+from hnr_planner.core.trees import NONE
 import numpy as np
 from numpy.typing import NDArray
 

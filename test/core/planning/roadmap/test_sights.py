@@ -2,7 +2,7 @@
 
 from hnr_planner.core.planning.roadmap.corners import distinct
 from hnr_planner.core.planning.roadmap.sights import edges_of, mend, no_ways, SEEN, Ways
-from hnr_planner.core.planning.search import NONE
+from hnr_planner.core.trees import NONE
 from hypothesis import given, settings
 from hypothesis import strategies as st
 import numpy as np
