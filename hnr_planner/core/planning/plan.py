@@ -201,7 +201,7 @@ def _compile(request: Request, n_paths: int) -> None:
         return
     compile_search(request.planner, request.problem)
     without_search(request)
-    ends = np.stack([request.start, request.goal])
+    ends = np.stack([request.start, request.start])
     compile_shorten(space, ends)
     space.first_blocked_segment(ends)
     space.rough_path(request.problem.start, request.problem.start)

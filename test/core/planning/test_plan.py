@@ -1,6 +1,8 @@
 """The answer to a request: every status, every refusal, the clock and the seed."""
 
 import math
+import subprocess
+import sys
 from test.brute_force import path_collisions
 from test.laws import maps
 import threading
@@ -139,6 +141,26 @@ def test_a_start_that_is_not_free(start: tuple[float, float], words: str):
     assert result.path.shape == (0, 2) and result.paths == ()
     assert result.length == math.inf
     assert result.first_solution is None
+
+
+FAR_AWAY = """
+import numpy as np
+from hnr_planner.core import ALGORITHMS, GridSpace, plan
+space = GridSpace.from_blocked(np.zeros((50, 50), bool), 0.1, (0.0, 0.0, 0.4))
+kinds = [{'algorithm': name} for name in ALGORITHMS]
+for kind in (*kinds, {'clearance': 0.5}, {'alternatives': 2}):
+    for start, goal in (((1e9, 1e9), (0.0, 1.0)), ((0.0, 1.0), (-1e9, 1e9))):
+        print(plan(space, start, goal, **kind).status.name)
+"""
+
+
+def test_ends_far_from_the_map_are_refused_by_the_first_request_of_a_process_too():
+    """What it compiles must not look at them: nothing has been checked by then."""
+    done = subprocess.run(
+        [sys.executable, '-c', FAR_AWAY], capture_output=True, text=True, timeout=120, check=False
+    )
+    assert done.returncode == 0, done.stderr
+    assert set(done.stdout.split()) == {'INVALID_START', 'INVALID_GOAL'}
 
 
 def test_a_goal_that_is_not_free():
