@@ -42,9 +42,9 @@ def way_out(
 
     """
     space = snapshot.space
-    here = space.to_kernel(np.array(start)) - space.frame.RIM
-    if not (0.0 <= here[0] <= space.shape[1] and 0.0 <= here[1] <= space.shape[0]):
+    if not space.reaches_to(start):
         return None
+    here = space.to_kernel(np.array(start)) - space.frame.RIM
     surroundings = _Surroundings.cut(snapshot, here, radius / space.resolution)
     exits = surroundings.exits(space.margin)
     lengths = np.hypot(*(exits.points - surroundings.here).T)

@@ -82,9 +82,4 @@ def from_robot_on(points: NDArray[np.float64], robot: Pose) -> int:
 
 def _is_outside(pose: Pose, report: Report) -> bool:
     """Return whether a pose in the map's frame lies outside the map."""
-    if report.snapshot is None:
-        return False
-    space = report.snapshot.space
-    x, y = space.to_kernel(np.array(pose.point)) - space.frame.RIM
-    rows, columns = space.shape
-    return not (0.0 <= x <= columns and 0.0 <= y <= rows)
+    return report.snapshot is not None and not report.snapshot.space.reaches_to(pose.point)

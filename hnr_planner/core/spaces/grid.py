@@ -198,15 +198,21 @@ class GridSpace(Space):
         """Cells (rows, cols) that the map says are occupied, before inflation."""
         return self._wall_distance[1:-1, 1:-1] == 0
 
+    def reaches_to(self, point: ArrayLike) -> bool:
+        """Say whether ``point`` (2,) [m] lies on the map, its edge included."""
+        x, y = self.frame.to_kernel(check_point('point', point, 2)) - self.frame.RIM
+        rows, columns = self.shape
+        return bool(0.0 <= x <= columns and 0.0 <= y <= rows)
+
     def why_not_free(self, point: ArrayLike) -> str:
         """Say in words why ``point`` (2,) [m] is not free."""
         x, y = self.frame.to_kernel(check_point('point', point, 2)) - self.frame.RIM
         rows, columns = self.shape
         if not (0 < x < columns and 0 < y < rows):
             lower, upper = self.bounds
-            on_edge = 0 <= x <= columns and 0 <= y <= rows
+            where = 'on the edge of' if self.reaches_to(point) else 'outside'
             return (
-                f'{"on the edge of" if on_edge else "outside"} the map, which spans '
+                f'{where} the map, which spans '
                 f'x {lower[0]:g}..{upper[0]:g}, y {lower[1]:g}..{upper[1]:g} m'
             )
         row, column = int(y), int(x)
