@@ -6,7 +6,16 @@ from typing import NamedTuple
 
 from benchmarks.competitors.ompl_planners import NATIVE, WHEEL
 from benchmarks.race import Standing
-from benchmarks.sections import Bench, milliseconds, on_all, ratio, Section, table, Verdict
+from benchmarks.sections import (
+    Bench,
+    milliseconds,
+    on_all,
+    ratio,
+    Section,
+    shortfalls,
+    table,
+    Verdict,
+)
 from benchmarks.standings import Summary, summary
 
 #: What a call from Python may cost above the best of the others [s].
@@ -114,5 +123,5 @@ def _row(duel: Duel) -> list[str]:
         duel.fastest,
         milliseconds(duel.fastest_seconds),
         ratio(duel.auto.seconds / duel.fastest_seconds),
-        ', '.join(words for words, fails in short.items() if fails) or 'no',
+        shortfalls(short),
     ]

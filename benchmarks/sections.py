@@ -85,6 +85,11 @@ def ratio(value: float) -> str:
     return f'{value:.3f}' if np.isfinite(value) else '-'
 
 
+def shortfalls(fails: dict[str, bool]) -> str:
+    """Write what falls short, of what is said to fail or not; 'no' for nothing."""
+    return ', '.join(what for what, short in fails.items() if short) or 'no'
+
+
 def on_all(what: str, to_reach: str, falls_short: dict[str, str], n_problems: int) -> Verdict:
     """Judge what is asked on every problem; ``falls_short`` says by how much on which."""
     held = f'on {n_problems - len(falls_short)} of {n_problems} problems'

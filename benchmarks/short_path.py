@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from benchmarks.race import Standing
-from benchmarks.sections import Bench, milliseconds, on_all, ratio, Section, table
+from benchmarks.sections import Bench, milliseconds, on_all, ratio, Section, shortfalls, table
 from benchmarks.standings import Summary, summary
 
 #: A wavefront's time on a small map is no time to optimize in [s].
@@ -84,5 +84,5 @@ def _row(row: Lengths) -> list[str]:
         milliseconds(row.ours.soon),
         milliseconds(row.waves.seconds),
         ratio(row.waves.ratio),
-        ', '.join(words for words, fails in short.items() if fails) or 'no',
+        shortfalls(short),
     ]
