@@ -24,6 +24,7 @@ setup(
         'opencv-python-headless>=4.6',
         'pillow>=10.2',
         'pyyaml>=6.0',
+        'scipy>=1.11',
     ],
     extras_require={
         # ROS 2 Jazzy as wheels, for machines without ROS (x86-64 Linux). Never install these
@@ -36,7 +37,6 @@ setup(
             'colcon-common-extensions>=0.3',
             'hypothesis>=6.98',
             'pytest>=7.4',
-            'scipy>=1.11',
             'setuptools>=64,<80',  # later ones lack what `colcon build --symlink-install` calls
         ],
         # Held to one series each, so that a new rule of a tool never fails an old commit.

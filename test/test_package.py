@@ -51,6 +51,7 @@ IN_ROSDEP = {
     'cv2': 'python3-opencv',
     'matplotlib': 'python3-matplotlib',
     'numpy': 'python3-numpy',
+    'scipy': 'python3-scipy',
     'yaml': 'python3-yaml',
 }
 NOT_IN_ROSDEP = {'numba'}  # rosdep has a key for it, Ubuntu 24.04 no package

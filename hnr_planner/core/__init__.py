@@ -15,25 +15,41 @@ from hnr_planner.core.planning.roadmap.roadmap import Roadmap
 from hnr_planner.core.planning.rrt import RRT
 from hnr_planner.core.planning.simplify import simplify
 from hnr_planner.core.sampling.sample import sample, WALKS
-from hnr_planner.core.spaces import Chord, GridSpace, Space
+from hnr_planner.core.spaces import (
+    BallSpace,
+    BoxSpace,
+    Chord,
+    DifferenceSpace,
+    GridSpace,
+    PolytopeSpace,
+    ProductSpace,
+    Space,
+    UnionSpace,
+)
 from hnr_planner.core.warm_up import warm_up
 
 __all__ = [
     'ALGORITHMS',
     'RRT',
     'WALKS',
+    'BallSpace',
+    'BoxSpace',
     'Cancelled',
     'Chord',
+    'DifferenceSpace',
     'FirstSolution',
     'GridSpace',
     'HitAndRun',
     'HnrError',
     'PlanResult',
     'PlannerStatus',
+    'PolytopeSpace',
+    'ProductSpace',
     'RequestError',
     'Roadmap',
     'Space',
     'SpaceError',
+    'UnionSpace',
     'plan',
     'sample',
     'simplify',

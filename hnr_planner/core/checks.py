@@ -33,6 +33,19 @@ def check_point(name: str, point: ArrayLike, dim: int) -> Floats:
     return array
 
 
+def check_vector(name: str, vector: ArrayLike, error: type[HnrError] = RequestError) -> Floats:
+    """Return ``vector`` (dim,) of any dimension as fresh finite floats, or raise ``error``."""
+    try:
+        array = np.array(vector, dtype=np.float64)
+    except (TypeError, ValueError, OverflowError):
+        raise error(f'{name} must be numbers, got {vector!r}') from None
+    if array.ndim != 1 or array.size == 0:
+        raise error(f'{name} must have shape (dim,) with dim at least 1, got {array.shape}')
+    if not np.isfinite(array).all():
+        raise error(f'{name} must be finite, got {array.tolist()}')
+    return array
+
+
 def check_direction(name: str, direction: ArrayLike, dim: int) -> Floats:
     """Return ``direction`` (dim,), finite and not zero, or raise RequestError."""
     array = check_point(name, direction, dim)

@@ -28,6 +28,7 @@ from numba.core import config
 from numba.core.dispatcher import Dispatcher
 
 CORE = Path(__file__).resolve().parent
+OPTIONS: dict[str, Any] = {'nogil': True, 'error_model': 'numpy'}
 
 
 def source_digest(folder: Path) -> str:
@@ -71,9 +72,14 @@ def kernel(function: Callable[..., Any]) -> Dispatcher:
     before = numba_config.CACHE_DIR
     numba_config.CACHE_DIR = str(cache_folder())
     try:
-        return njit(nogil=True, cache=True, error_model='numpy')(function)
+        return njit(cache=True, **OPTIONS)(function)
     finally:
         numba_config.CACHE_DIR = before
+
+
+def compiled_apart(function: Dispatcher) -> Dispatcher:
+    """Return a kernel's function as another kernel, whose code is kept with its callers' only."""
+    return njit(**OPTIONS)(function.py_func)
 
 
 @cache

@@ -3,7 +3,15 @@
 from collections.abc import Callable
 from test.laws import maps
 
-from hnr_planner.core import GridSpace
+from hnr_planner.core import (
+    BallSpace,
+    BoxSpace,
+    DifferenceSpace,
+    GridSpace,
+    PolytopeSpace,
+    ProductSpace,
+    UnionSpace,
+)
 import numpy as np
 
 TURNED = (3.0, -2.0, 0.7)
@@ -16,6 +24,34 @@ def _surveyed() -> GridSpace:
     data[:3, :5] = -1
     data[20, 20] = 64
     return GridSpace.from_occupancy(data, 0.05, (1.0, 2.0, -2.5), robot_radius=0.05)
+
+
+def _truncated_simplex() -> PolytopeSpace:
+    """Return x > 0, x + y + z < 1, cut off at x < .7."""
+    normals = np.vstack([-np.eye(3), np.ones((1, 3)), [[2.0, 0.0, 0.0]]])
+    return PolytopeSpace(normals, [0.0, 0.0, 0.0, 1.0, 1.4])
+
+
+def _box_without_balls() -> DifferenceSpace:
+    centres = np.random.default_rng(5).uniform(0.0, 1.0, (10, 4))
+    return DifferenceSpace(
+        BoxSpace(np.zeros(4), np.ones(4)), *(BallSpace(centre, 0.3) for centre in centres)
+    )
+
+
+def _grid_with_a_room_beside() -> UnionSpace:
+    """Return a turned map and a box over its lower left corner."""
+    return UnionSpace(
+        GridSpace.from_blocked(maps.U_SHAPE, 0.05, TURNED),
+        BoxSpace((2.9, -2.1), (3.05, -1.85)),
+    )
+
+
+def _nested() -> DifferenceSpace:
+    """Return a box without a shell, whose core and whose map are there again."""
+    shell = DifferenceSpace(BallSpace((2.0, 2.0), 1.9), BallSpace((2.0, 2.0), 1.2))
+    hall = GridSpace.from_blocked(maps.TWO_ROOMS, 0.2, (3.0, 2.0, 0.4))
+    return DifferenceSpace(BoxSpace((0.0, 0.0), (5.0, 4.0)), DifferenceSpace(shell, hall))
 
 
 SPACES: dict[str, Callable[[], object]] = {
@@ -34,4 +70,27 @@ SPACES: dict[str, Callable[[], object]] = {
     'grid, checkerboard': lambda: GridSpace.from_blocked(maps.CHECKERBOARD, 0.5, SHIFTED),
     'grid, spiral': lambda: GridSpace.from_blocked(maps.SPIRAL, 1.0, TURNED),
     'grid, surveyed': _surveyed,
+    'box': lambda: BoxSpace((-1.0, 2.0, 0.0), (1.0, 2.5, 8.0)),
+    'interval': lambda: BoxSpace([3.0], [4.0]),
+    'ball': lambda: BallSpace((5.0, -3.0, 0.5), 0.25),
+    'polytope': _truncated_simplex,
+    'union of a kind': lambda: UnionSpace(
+        BoxSpace((0.0, 0.0), (0.3, 1.0)),
+        BoxSpace((0.1 + 0.2, 0.0), (1.0, 0.2)),
+        BoxSpace((0.9, 0.1), (1.1, 2.0)),
+    ),
+    'union of kinds': lambda: UnionSpace(
+        BoxSpace((-1.0, -1.0, -1.0), (0.0, 1.0, 1.0)),
+        BallSpace((0.5, 0.0, 0.0), 0.7),
+        UnionSpace(BallSpace((1.5, 0.0, 0.0), 0.7), _truncated_simplex()),
+    ),
+    'difference': lambda: DifferenceSpace(
+        BoxSpace((0.0, 0.0), (3.0, 2.0)), BallSpace((1, 1), 0.9)
+    ),
+    'difference with many balls': _box_without_balls,
+    'grid and box': _grid_with_a_room_beside,
+    'difference in a difference': _nested,
+    'product': lambda: ProductSpace(
+        GridSpace.from_blocked(maps.TWO_ROOMS, 0.1), BallSpace([0.0], 2)
+    ),
 }

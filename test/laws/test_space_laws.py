@@ -38,7 +38,7 @@ def random_points(space, rng, n=N):
 
 
 def free_points(space, rng, n=N):
-    points = random_points(space, rng, 40 * n)
+    points = random_points(space, rng, 40 * n + 1000)
     points = points[space.contains(points)][:n]
     assert len(points) == n
     return points

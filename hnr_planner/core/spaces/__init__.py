@@ -1,6 +1,22 @@
 """Spaces: open, bounded sets of free points that answer for points and chords."""
 
+from hnr_planner.core.spaces.ball import BallSpace
+from hnr_planner.core.spaces.box import BoxSpace
+from hnr_planner.core.spaces.difference import DifferenceSpace
 from hnr_planner.core.spaces.grid import GridSpace
+from hnr_planner.core.spaces.polytope import PolytopeSpace
+from hnr_planner.core.spaces.product import ProductSpace
 from hnr_planner.core.spaces.space import Chord, Space
+from hnr_planner.core.spaces.union import UnionSpace
 
-__all__ = ['Chord', 'GridSpace', 'Space']
+__all__ = [
+    'BallSpace',
+    'BoxSpace',
+    'Chord',
+    'DifferenceSpace',
+    'GridSpace',
+    'PolytopeSpace',
+    'ProductSpace',
+    'Space',
+    'UnionSpace',
+]

@@ -14,6 +14,7 @@ from hnr_planner.core.spaces.grid_frame import GridFrame
 from hnr_planner.core.spaces.grid_lattice import build_lattice, Lattice, rough_path
 from hnr_planner.core.spaces.grid_parts import island_points, nearest_in_part
 from hnr_planner.core.spaces.grid_traversal import GridData
+from hnr_planner.core.spaces.placed import PlacedData
 from hnr_planner.core.spaces.primitives import part_of
 from hnr_planner.core.spaces.space import Space
 import numpy as np
@@ -139,6 +140,11 @@ class GridSpace(Space):
     def origin(self) -> tuple[float, float, float]:
         """Pose (x, y, yaw) of the grid in the map frame [m, m, rad]."""
         return self.frame.origin
+
+    @cached_property
+    def part(self) -> PlacedData:
+        """The compiled grid in the map frame."""
+        return PlacedData(self.data, *self.frame.to_cells)
 
     @property
     def scale(self) -> float:

@@ -81,6 +81,13 @@ class GridFrame:
         """Cosine and sine of the yaw, exact for none."""
         return math.cos(self.origin[2]), math.sin(self.origin[2])
 
+    @cached_property
+    def to_cells(self) -> tuple[Floats, Floats]:
+        """Matrix (2, 2) and offset (2,) that bring a point of the map frame into this one."""
+        cos, sin = self._turn
+        matrix = np.array([[cos, sin], [-sin, cos]]) / self.resolution
+        return matrix, self.RIM - matrix @ np.array(self.origin[:2])
+
     def to_kernel(self, points: Floats) -> Floats:
         """Bring points (..., 2) [m] of the map frame into the kernel frame."""
         x, y, _ = self.origin

@@ -78,6 +78,67 @@ def _leave(grid, x, u, t, enough):
 
 
 @kernel
+def _touches(grid, x):
+    """Say whether one of the cells that touch the point is free."""
+    free_distance = grid.free_distance
+    rows, columns = free_distance.shape
+    if not (0.0 < x[0] < columns and 0.0 < x[1] < rows):
+        return False
+    column, row = math.floor(x[0]), math.floor(x[1])
+    left, below = math.ceil(x[0]) - 1, math.ceil(x[1]) - 1
+    return _any_free(free_distance, left, column, below, row)
+
+
+@kernel
+def _enter(grid, x, u, t):
+    """Follow the ray from cell to cell until the crossing into one touches a free cell."""
+    if _touches(grid, x + t * u):
+        return t
+    free_distance = grid.free_distance
+    rows, columns = free_distance.shape
+    first_column, last_column = _slab(x[0], u[0], columns)
+    first_row, last_row = _slab(x[1], u[1], rows)
+    s, last = max(t, first_column, first_row), min(last_column, last_row)
+    if s >= last:
+        return math.inf
+    column, column_step, beside_column = _first_cell(x[0] + s * u[0], u[0])
+    row, row_step, beside_row = _first_cell(x[1] + s * u[1], u[1])
+    column, row = min(max(column, 0), columns - 1), min(max(row, 0), rows - 1)
+    while True:
+        s_column = _crossing(x[0], u[0], column, column_step)
+        s_row = _crossing(x[1], u[1], row, row_step)
+        s = min(s_column, s_row)
+        if s >= last:
+            return math.inf
+        next_column = column + column_step if s_column == s else column
+        next_row = row + row_step if s_row == s else row
+        left, right = min(column, next_column) + beside_column, max(column, next_column)
+        below, above = min(row, next_row) + beside_row, max(row, next_row)
+        if _any_free(free_distance, left, right, below, above):
+            return max(s, t)
+        column, row = next_column, next_row
+
+
+@kernel
+def _slab(x, u, size):
+    """Parameters between which the ray is in (0, size) along one axis; inf, -inf for never."""
+    if u == 0.0:
+        return (-math.inf, math.inf) if 0.0 < x < size else (math.inf, -math.inf)
+    a, b = (0.0 - x) / u, (size - x) / u
+    return min(a, b), max(a, b)
+
+
+@kernel
+def _any_free(free_distance, left, right, below, above):
+    """Say whether a cell of some columns and rows, both ends included, is free."""
+    for row in range(below, above + 1):
+        for column in range(left, right + 1):
+            if free_distance[row, column] > 0:
+                return True
+    return False
+
+
+@kernel
 def _sees(grid, a, b):
     dx, dy = b[0] - a[0], b[1] - a[1]
     if dx == 0.0 and dy == 0.0:
@@ -174,4 +235,4 @@ def _settled(x, u, cell, step, s):
     return cell, crossing
 
 
-register(GridData, Primitives(_contains, _component, _leave, _sees))
+register(GridData, Primitives(_contains, _touches, _leave, _enter, _component, _sees))

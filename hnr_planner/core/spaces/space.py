@@ -32,9 +32,9 @@ class Space(ABC):
     """
     An open, bounded set of free points in R^dim.
 
-    A space keeps what its kernels need in ``data``, in a frame of its own: the *kernel frame*, a
-    rigid motion and a scaling away from the caller's. Searches run there; points cross over at the
-    door, by ``to_kernel`` and ``from_kernel``.
+    A space keeps what its kernels need in ``data``, in the *kernel frame*: the caller's, unless a
+    space says otherwise, then a rigid motion and a scaling away. Searches run there; points cross
+    over at the door, by ``to_kernel`` and ``from_kernel``.
 
     Attributes
     ----------
@@ -50,13 +50,27 @@ class Space(ABC):
 
     @property
     @abstractmethod
-    def scale(self) -> float:
-        """Caller's units [m] in one unit of the kernel frame."""
+    def bounds(self) -> tuple[Floats, Floats]:
+        """Lower and upper corner (dim,) of a box around the free points, caller's frame."""
 
     @property
-    @abstractmethod
+    def part(self) -> Any:
+        """The compiled space in the caller's frame: what composed spaces are made of."""
+        return self.data
+
+    def covers_box(self, lower: Floats, upper: Floats) -> bool:
+        """Say whether the closure is known to hold all of the box between two corners (dim,)."""
+        return False
+
+    @property
+    def scale(self) -> float:
+        """Caller's units [m] in one unit of the kernel frame."""
+        return 1.0
+
+    @property
     def kernel_bounds(self) -> tuple[Floats, Floats]:
         """Lower and upper corner (dim,) of a box around the free points, kernel frame."""
+        return self.bounds
 
     @property
     def margin(self) -> float:
@@ -65,9 +79,14 @@ class Space(ABC):
         return MARGIN * float(np.linalg.norm(upper - lower))
 
     @property
-    @abstractmethod
     def typical_clearance(self) -> float:
-        """Distance from a free point to the boundary, roughly and on average, kernel frame."""
+        """
+        Distance from a free point to the boundary, roughly and on average, kernel frame.
+
+        Unless a space knows better, that of a cube with the shortest side of the bounds.
+        """
+        lower, upper = self.kernel_bounds
+        return float((upper - lower).min()) / (2.0 * (self.dim + 1))
 
     @property
     def walls(self) -> Any:
@@ -79,22 +98,17 @@ class Space(ABC):
         """A point (k, dim) in each obstacle that a path can go round; None where unknown."""
         return None
 
-    @property
-    @abstractmethod
-    def bounds(self) -> tuple[Floats, Floats]:
-        """Lower and upper corner (dim,) of a box around the free points, caller's frame."""
-
-    @abstractmethod
     def to_kernel(self, points: Floats) -> Floats:
-        """Bring points (..., dim) of the caller's frame into the kernel frame."""
+        """Bring points (..., dim) of the caller's frame into the kernel frame, in a new array."""
+        return np.array(points, order='C')
 
-    @abstractmethod
     def from_kernel(self, points: Floats) -> Floats:
-        """Bring points (..., dim) of the kernel frame into the caller's frame."""
+        """Bring points (..., dim) of the kernel frame into the caller's frame; likewise."""
+        return np.array(points, order='C')
 
-    @abstractmethod
     def turn_to_kernel(self, directions: Floats) -> Floats:
-        """Turn directions (..., dim) into the kernel frame, without scaling them."""
+        """Turn directions (..., dim) into the kernel frame, without scaling them; likewise."""
+        return np.array(directions, order='C')
 
     def why_not_free(self, point: ArrayLike) -> str:
         """Say in words why ``point`` (dim,) is not free."""

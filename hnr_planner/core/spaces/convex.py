@@ -1,0 +1,139 @@
+"""
+Convex pieces: sets that cut one interval out of every line.
+
+The data of such a space holds one piece or several, which together mean their union: pieces of one
+kind lie in the same arrays, so that a union of many is one short loop. For its type three kernels
+are registered, and the primitives follow from them:
+
+``count(space) -> int``
+    How many pieces there are.
+``holds(space, k, x, closed) -> bool``
+    Whether piece ``k`` holds ``x``, its boundary included when ``closed``.
+``span(space, k, x, u, closed) -> (float, float)``
+    The interval of the line ``x + s u`` in piece ``k``: (inf, -inf) for none. Open and closed
+    pieces differ in the lines that only touch them, or run along a face.
+
+Each array of the data has one row for each piece. The last field, ``gap``, is how far apart two
+pieces may be for a ray to pass from one to the other.
+"""
+
+from collections.abc import Sequence
+import math
+from typing import Any, NamedTuple
+
+from hnr_planner.core.kernels import interpreted, kernel
+from hnr_planner.core.lengths import norm
+from hnr_planner.core.spaces.primitives import Primitives, register
+from numba.core.dispatcher import Dispatcher
+from numba.extending import overload
+import numpy as np
+
+
+class Convex(NamedTuple):
+    """The kernels of one type of convex pieces."""
+
+    count: Dispatcher
+    holds: Dispatcher
+    span: Dispatcher
+
+
+_CONVEX: dict[type, Convex] = {}
+
+
+def is_convex(data: Any) -> bool:
+    """Say whether data holds convex pieces, which ``pack`` takes."""
+    return type(data) in _CONVEX
+
+
+def register_convex(data_type: type, convex: Convex) -> None:
+    """Let the primitives answer for NamedTuples of ``data_type``, whose pieces are convex."""
+    _CONVEX[data_type] = convex
+    register(data_type, Primitives(_contains, _touches, _leave, _enter))
+
+
+def pack(pieces: Sequence[Any], gap: float) -> Any:
+    """Return the data of all pieces of several data of one type, between which gaps close."""
+    fields = zip(*(data[:-1] for data in pieces), strict=True)
+    return type(pieces[0])(*map(np.concatenate, fields), gap)
+
+
+def count(space: Any) -> int:
+    """Return the number of pieces."""
+    return interpreted(_CONVEX[type(space)].count)(space)
+
+
+def holds(space: Any, k: int, x: Any, closed: bool) -> bool:
+    """Say whether piece ``k`` holds ``x``, its boundary included when ``closed``."""
+    return interpreted(_CONVEX[type(space)].holds)(space, k, x, closed)
+
+
+def span(space: Any, k: int, x: Any, u: Any, closed: bool) -> tuple[float, float]:
+    """Return the interval of the line ``x + s u`` in piece ``k``; (inf, -inf) for none."""
+    return interpreted(_CONVEX[type(space)].span)(space, k, x, u, closed)
+
+
+@overload(count)
+def _compiled_count(space):
+    compiled = _CONVEX[space.instance_class].count
+    return lambda space: compiled(space)
+
+
+@overload(holds)
+def _compiled_holds(space, k, x, closed):
+    compiled = _CONVEX[space.instance_class].holds
+    return lambda space, k, x, closed: compiled(space, k, x, closed)
+
+
+@overload(span)
+def _compiled_span(space, k, x, u, closed):
+    compiled = _CONVEX[space.instance_class].span
+    return lambda space, k, x, u, closed: compiled(space, k, x, u, closed)
+
+
+@kernel
+def _contains(space, x):
+    return _any_holds(space, x, False)
+
+
+@kernel
+def _touches(space, x):
+    return _any_holds(space, x, True)
+
+
+@kernel
+def _any_holds(space, x, closed):
+    for k in range(count(space)):
+        if holds(space, k, x, closed):
+            return True
+    return False
+
+
+@kernel
+def _leave(space, x, u, t, enough):
+    """Go to the end of a piece that holds the line at ``t``, and on in those that reach on."""
+    s = t
+    for k in range(count(space)):
+        lower, upper = span(space, k, x, u, False)
+        if lower < t < upper:
+            s = max(s, upper)
+    if s == t or count(space) == 1:
+        return s
+    gap = space.gap / norm(u)
+    reaching = True
+    while reaching and s <= enough:
+        reaching = False
+        for k in range(count(space)):
+            lower, upper = span(space, k, x, u, False)
+            if lower < s + gap < upper:
+                s, reaching = upper, True
+    return s
+
+
+@kernel
+def _enter(space, x, u, t):
+    first = math.inf
+    for k in range(count(space)):
+        lower, upper = span(space, k, x, u, True)
+        if t <= upper:
+            first = min(first, max(t, lower))
+    return first

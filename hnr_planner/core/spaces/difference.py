@@ -1,0 +1,114 @@
+"""A space without what others hold."""
+
+import math
+from typing import Any, NamedTuple
+
+from hnr_planner.core.checks import check_point, Floats
+from hnr_planner.core.errors import SpaceError
+from hnr_planner.core.kernels import kernel
+from hnr_planner.core.spaces.composed import check_parts, check_same_dim
+from hnr_planner.core.spaces.primitives import (
+    contains,
+    enter,
+    leave,
+    Primitives,
+    register,
+    touches,
+)
+from hnr_planner.core.spaces.space import Space
+from hnr_planner.core.spaces.union import UnionSpace
+from numpy.typing import ArrayLike
+
+
+class DifferenceData(NamedTuple):
+    """
+    A compiled difference.
+
+    Attributes
+    ----------
+    base, removed : NamedTuple
+        Compiled spaces in one frame: the points of ``base`` that ``removed`` does not touch.
+
+    """
+
+    base: Any
+    removed: Any
+
+
+class DifferenceSpace(Space):
+    """
+    The points of a space outside some others, whose boundaries are taken away with them.
+
+    Parameters
+    ----------
+    base : Space
+        What there is at first.
+    *removed : Space
+        What is taken away: at least one, of the same dimension.
+
+    Raises
+    ------
+    SpaceError
+        When the spaces do not fit, or nothing is left for certain.
+
+    """
+
+    def __init__(self, base: Space, *removed: Space) -> None:
+        (self.base,) = check_parts((base,))
+        self.removed = check_parts(removed)
+        self.dim = check_same_dim((self.base, *self.removed))
+        for k, part in enumerate(self.removed):
+            if part.covers_box(*self.base.bounds):
+                raise SpaceError(f'nothing is left: removed part {k} covers the whole base')
+        self.data = DifferenceData(self.base.part, UnionSpace(*self.removed).part)
+
+    @property
+    def bounds(self) -> tuple[Floats, Floats]:
+        """Lower and upper corner (dim,) of the base."""
+        return self.base.bounds
+
+    @property
+    def typical_clearance(self) -> float:
+        """That of the base, cut down by what lies in between."""
+        return self.base.typical_clearance / (1.0 + len(self.removed)) ** (1.0 / self.dim)
+
+    def why_not_free(self, point: ArrayLike) -> str:
+        """Say in words why ``point`` (dim,) is not free."""
+        x = check_point('point', point, self.dim)
+        if not self.base.contains(x):
+            return self.base.why_not_free(x)
+        for k, part in enumerate(self.removed):
+            if part.contains(x):
+                return f'inside removed part {k}'
+        return 'on the boundary of a removed part'
+
+
+@kernel
+def _contains(difference, x):
+    return contains(difference.base, x) and not touches(difference.removed, x)
+
+
+@kernel
+def _touches(difference, x):
+    return touches(difference.base, x) and not contains(difference.removed, x)
+
+
+@kernel
+def _leave(difference, x, u, t, enough):
+    end = leave(difference.base, x, u, t, enough)
+    return min(end, enter(difference.removed, x, u, t)) if end > t else t
+
+
+@kernel
+def _enter(difference, x, u, t):
+    """Enter the base, and leave what is removed, until neither moves the line on."""
+    s = enter(difference.base, x, u, t)
+    while s < math.inf:
+        out = leave(difference.removed, x, u, s, math.inf)
+        if out == s:
+            break
+        s = enter(difference.base, x, u, out)
+    return s
+
+
+register(DifferenceData, Primitives(_contains, _touches, _leave, _enter))

@@ -1,0 +1,108 @@
+"""
+The laws of the primitives that composed spaces are made of, held on every compiled space.
+
+``enter`` is held against points along the line: nothing is free before it, something is after it.
+"""
+
+from test.laws.spaces import SPACES
+from test.laws.test_space_laws import random_points, size
+
+from hnr_planner.core.kernels import interpreted, kernel
+from hnr_planner.core.spaces import primitives
+from hnr_planner.core.spaces.primitives import chord
+import numpy as np
+import pytest
+
+N = 300
+ALONG = 400
+
+
+@kernel
+def touching(space, points):
+    """Say which of ``points`` (k, dim) the closure holds."""
+    return np.array([primitives.touches(space, x) for x in points])
+
+
+@kernel
+def entering(space, x, u, t):
+    return primitives.enter(space, x, u, t)
+
+
+@kernel
+def leaving(space, x, u, t, enough):
+    return primitives.leave(space, x, u, t, enough)
+
+
+@pytest.fixture(scope='module', params=SPACES)
+def space(request):
+    return SPACES[request.param]()
+
+
+@pytest.fixture
+def rng():
+    return np.random.default_rng(20160823)
+
+
+def lines(space, rng):
+    """Yield points around the space and directions of about its size, in the caller's frame."""
+    for point in random_points(space, rng, N):
+        yield point, rng.standard_normal(space.dim) * size(space)
+
+
+def test_the_closure_holds_every_free_point(space, rng):
+    points = random_points(space, rng, 20 * N)
+    assert touching(space.part, points[space.contains(points)]).all()
+
+
+def test_the_closure_holds_the_ends_of_chords(space, rng):
+    """Just inside an end is free, just beyond it, almost surely, no point of the closure."""
+    for point, direction in lines(space, rng):
+        lower, upper = chord(space.part, point, direction)
+        if lower == upper:
+            continue
+        ends = (
+            point
+            + np.array([lower - 1e-9, lower + 1e-9, upper - 1e-9, upper + 1e-9])[:, np.newaxis]
+            * direction
+        )
+        assert touching(space.part, ends).tolist() == [False, True, True, False]
+
+
+def test_nothing_is_free_before_a_line_enters_and_something_after_it(space, rng):
+    verdicts = set()
+    for point, direction in lines(space, rng):
+        first = entering(space.part, point, direction, 0.0)
+        assert (first == 0.0) == bool(touching(space.part, point[np.newaxis])[0])
+        before = np.linspace(0.0, min(first, 3.0), ALONG)[:-1, np.newaxis]
+        assert first == 0.0 or not space.contains(point + before * direction).any()
+        if first < np.inf:
+            assert space.contains(point + (first + 1e-9) * direction)
+        verdicts.add(first if first in (0.0, np.inf) else 'ahead')
+    assert verdicts == {0.0, np.inf, 'ahead'}
+
+
+def test_a_line_that_is_in_stays_where_it_is_and_one_that_is_out_too(space, rng):
+    for point, direction in lines(space, rng):
+        t = rng.uniform(0.0, 1.0)
+        if space.contains(point + t * direction):
+            assert entering(space.part, point, direction, t) == t
+            assert leaving(space.part, point, direction, t, np.inf) > t
+        else:
+            assert leaving(space.part, point, direction, t, np.inf) == t
+
+
+def test_a_line_leaves_where_it_would_have_left_from_anywhere_before(space, rng):
+    for point, direction in lines(space, rng):
+        _, upper = chord(space.part, point, direction)
+        for t in rng.uniform(0.0, 1.0, 3) * upper:
+            end = leaving(space.part, point, direction, t, np.inf)
+            assert end == pytest.approx(upper, abs=1e-9)
+
+
+def test_interpreted_and_compiled_answer_alike(space, rng):
+    for (point, direction), _ in zip(lines(space, rng), range(30), strict=False):
+        for function, rest in ((leaving, (0.0, np.inf)), (entering, (0.0,))):
+            compiled = function(space.part, point, direction, *rest)
+            with np.errstate(divide='ignore', invalid='ignore', over='ignore'):
+                plain = interpreted(function)(space.part, point, direction, *rest)
+            assert compiled == plain
