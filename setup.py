@@ -33,7 +33,10 @@ setup(
             'ros-jazzy-common-interfaces==5.3.*',
             'ros-jazzy-rclpy[fastrtps]==7.1.*',
         ],
+        # For those who hand draws on to it; the package itself does without.
+        'arviz': ['arviz>=0.17'],
         'test': [
+            'arviz>=0.17',
             'colcon-common-extensions>=0.3',
             'hypothesis>=6.98',
             'pytest>=7.4',

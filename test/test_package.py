@@ -54,7 +54,10 @@ IN_ROSDEP = {
     'scipy': 'python3-scipy',
     'yaml': 'python3-yaml',
 }
-NOT_IN_ROSDEP = {'numba'}  # rosdep has a key for it, Ubuntu 24.04 no package
+# rosdep has a key for numba, but Ubuntu 24.04 no package; it has neither for arviz.
+NOT_IN_ROSDEP = {'arviz', 'numba'}
+# What is imported by one function only, for those who have it.
+OPTIONAL = {'arviz'}
 
 
 def imports(path: Path) -> Iterator[str]:
@@ -139,7 +142,7 @@ def test_both_manifests_agree(distribution: Any, manifest: ElementTree.Element) 
 def test_pip_requirements_are_the_libraries_imported(distribution: Any) -> None:
     declared = names(distribution.install_requires)
     of_ros = {name for name in libraries(*PACKAGE.glob('ros/**/*.py')) if is_ros(name)}
-    imported = libraries(*map(source, MODULES)) - of_ros
+    imported = libraries(*map(source, MODULES)) - of_ros - OPTIONAL
     assert declared == {ON_PYPI.get(name, name) for name in imported}
 
 
@@ -153,12 +156,14 @@ def test_requirements_of_the_tests_are_what_they_import_besides(
     distribution: Any, manifest: ElementTree.Element
 ) -> None:
     imported = {name for name in libraries(*ROOT.glob('test/**/*.py')) if not is_ros(name)}
-    imported -= libraries(*map(source, MODULES)) | {'benchmarks', 'distutils', 'test'}
+    imported -= libraries(*map(source, MODULES)) - OPTIONAL
+    imported -= {'benchmarks', 'distutils', 'test'}
     tools = {'colcon-common-extensions', 'setuptools'}
     on_pypi = names(distribution.extras_require['test'])
     in_rosdep = {element.text for element in manifest.iter('test_depend')}
     assert on_pypi == imported | tools
-    assert in_rosdep == {f'python3-{name}' for name in imported}
+    assert in_rosdep == {f'python3-{name}' for name in imported - NOT_IN_ROSDEP}
+    assert set(distribution.extras_require) >= OPTIONAL
 
 
 def test_every_console_script_is_there(distribution: Any) -> None:

@@ -14,6 +14,14 @@ from hnr_planner.core.planning.result import FirstSolution, PlannerStatus, PlanR
 from hnr_planner.core.planning.roadmap.roadmap import Roadmap
 from hnr_planner.core.planning.rrt import RRT
 from hnr_planner.core.planning.simplify import simplify
+from hnr_planner.core.sampling.diagnostics import (
+    diagnose,
+    Diagnosis,
+    relaxation_time,
+    to_arviz,
+    total_variation,
+    TotalVariation,
+)
 from hnr_planner.core.sampling.sample import sample, WALKS
 from hnr_planner.core.spaces import (
     BallSpace,
@@ -36,6 +44,7 @@ __all__ = [
     'BoxSpace',
     'Cancelled',
     'Chord',
+    'Diagnosis',
     'DifferenceSpace',
     'FirstSolution',
     'GridSpace',
@@ -49,9 +58,14 @@ __all__ = [
     'Roadmap',
     'Space',
     'SpaceError',
+    'TotalVariation',
     'UnionSpace',
+    'diagnose',
     'plan',
+    'relaxation_time',
     'sample',
     'simplify',
+    'to_arviz',
+    'total_variation',
     'warm_up',
 ]

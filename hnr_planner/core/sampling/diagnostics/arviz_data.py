@@ -1,0 +1,24 @@
+"""Draws as arviz takes them, for its plots and its further diagnostics."""
+
+from typing import Any
+
+from hnr_planner.core.sampling.diagnostics.diagnosis import check_draws
+from numpy.typing import ArrayLike
+
+
+def to_arviz(draws: ArrayLike) -> Any:
+    """
+    Return draws (n_chains, n_draws, dim) as a dataset with one variable ``x``.
+
+    It is an ``xarray.Dataset`` with the dimensions ``chain`` and ``draw``, which every function
+    of arviz takes, whichever its version: ``arviz.summary(to_arviz(draws))``.
+
+    Raises
+    ------
+    ModuleNotFoundError
+        When arviz is not installed; the package does not bring it along.
+
+    """
+    import arviz
+
+    return arviz.convert_to_dataset({'x': check_draws(draws)})
