@@ -18,12 +18,14 @@ setup(
     python_requires='>=3.11',
     # The lower bounds of what Ubuntu 24.04 has are that system's own releases.
     install_requires=[
+        'joblib>=1.3',
         'matplotlib>=3.6',
         'numba>=0.60',
         'numpy>=1.26',
         'opencv-python-headless>=4.6',
         'pillow>=10.2',
         'pyyaml>=6.0',
+        'tqdm>=4.66',
     ],
     extras_require={
         # ROS 2 Jazzy as wheels, for machines without ROS (x86-64 Linux). Never install these

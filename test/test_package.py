@@ -38,6 +38,7 @@ ROOMS = (
     'hnr_planner.core',
     'hnr_planner.maps',
     'hnr_planner.drawing',
+    'hnr_planner.experiments',
     'hnr_planner.ros',
     'hnr_planner.demo',
     'hnr_planner.cli',
@@ -49,8 +50,10 @@ ON_PYPI = {'PIL': 'pillow', 'cv2': 'opencv-python-headless', 'yaml': 'pyyaml'}
 IN_ROSDEP = {
     'PIL': 'python3-pil',
     'cv2': 'python3-opencv',
+    'joblib': 'python3-joblib',
     'matplotlib': 'python3-matplotlib',
     'numpy': 'python3-numpy',
+    'tqdm': 'python3-tqdm',
     'yaml': 'python3-yaml',
 }
 NOT_IN_ROSDEP = {'numba'}  # rosdep has a key for it, Ubuntu 24.04 no package
