@@ -15,6 +15,7 @@ setup(
     maintainer='The hnr_planner developers',
     maintainer_email='maintainers@hnr-planner.example',
     packages=find_packages(include=[package_name, f'{package_name}.*']),
+    package_data={package_name: ['page/page.*']},
     python_requires='>=3.11',
     # The lower bounds of what Ubuntu 24.04 has are that system's own releases.
     install_requires=[
@@ -39,6 +40,7 @@ setup(
             'hypothesis>=6.98',
             'pytest>=7.4',
             'scipy>=1.11',
+            'selenium>=4.18',
             'setuptools>=64,<80',  # later ones lack what `colcon build --symlink-install` calls
         ],
         # Held to one series each, so that a new rule of a tool never fails an old commit.
