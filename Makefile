@@ -28,6 +28,8 @@ help:
 	@echo 'make check                 format, lint, types, spelling, then the tests'
 	@echo 'make bench                 side by side with OMPL and grid search, a quarter of an hour'
 	@echo 'make bench QUICK=1         the same in a minute or two, for a look'
+	@echo 'make figures               the experiments of docs/ again, about an hour'
+	@echo 'make figures RUNS=50       the same in a tenth of the time, for a look'
 	@echo 'make format                put the sources into shape'
 	@echo 'make clean                 remove .venv and all that was built'
 	@echo
@@ -97,6 +99,13 @@ bench: install
 	  $(VENV) -m pip install --disable-pip-version-check --quiet "$$competitor" || true; \
 	done
 	$(VENV) -m benchmarks $(if $(QUICK),--quick)
+
+#: Runs of each case: 500 are those of docs/, 50 are for a look.
+RUNS := 500
+
+.PHONY: figures
+figures: install
+	$(VENV) -m hnr_planner experiment --runs $(RUNS) --out docs/figures
 
 .PHONY: format
 format: install

@@ -15,9 +15,11 @@ setup(
     maintainer='The hnr_planner developers',
     maintainer_email='maintainers@hnr-planner.example',
     packages=find_packages(include=[package_name, f'{package_name}.*']),
+    package_data={package_name: ['page/page.*']},
     python_requires='>=3.11',
     # The lower bounds of what Ubuntu 24.04 has are that system's own releases.
     install_requires=[
+        'joblib>=1.3',
         'matplotlib>=3.6',
         'numba>=0.60',
         'numpy>=1.26',
@@ -25,6 +27,7 @@ setup(
         'pillow>=10.2',
         'pyyaml>=6.0',
         'scipy>=1.11',
+        'tqdm>=4.66',
     ],
     extras_require={
         # ROS 2 Jazzy as wheels, for machines without ROS (x86-64 Linux). Never install these
@@ -40,6 +43,7 @@ setup(
             'colcon-common-extensions>=0.3',
             'hypothesis>=6.98',
             'pytest>=7.4',
+            'selenium>=4.18',
             'setuptools>=64,<80',  # later ones lack what `colcon build --symlink-install` calls
         ],
         # Held to one series each, so that a new rule of a tool never fails an old commit.

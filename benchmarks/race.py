@@ -13,11 +13,11 @@ from dataclasses import dataclass, field
 from typing import NamedTuple
 
 from benchmarks.competitors import Competitor, Solver
-from benchmarks.grid_search import a_star, pull_string
 from benchmarks.judge import Judge, Record
 from benchmarks.problems import Floats, Problem
 from benchmarks.progress import show
 from hnr_planner.core import plan, simplify
+from hnr_planner.experiments.grid_search import a_star, pull_string
 import numpy as np
 
 #: Requests in one turn at most, and time [s] after which it ends, about.

@@ -82,7 +82,7 @@ def draw_map(
         Values from here on are occupied, 0..100.
 
     """
-    kinds = _kinds(occupancy, blocked, occupied_threshold)
+    kinds = cell_kinds(occupancy, blocked, occupied_threshold)
     colours = np.round(255 * to_rgba_array([colour for _, colour in KINDS])).astype(np.uint8)
     rows, cols = kinds.shape
     axes.imshow(
@@ -93,7 +93,7 @@ def draw_map(
         interpolation_stage='rgba',
         zorder=0,
     )
-    (left, low), (right, high) = _limits(occupancy)
+    (left, low), (right, high) = known_box(occupancy)
     axes.set(xlim=(left, right), ylim=(low, high), aspect='equal')
     _style(axes)
 
@@ -227,7 +227,7 @@ def figure_of_plans(
         axes.set_title(plan.title, loc='left', fontsize=10.5, color=INK, pad=8)
     for axes in panels[1:]:
         axes.set_ylabel('')
-    kinds = np.unique(_kinds(occupancy, blocked, occupied_threshold))
+    kinds = np.unique(cell_kinds(occupancy, blocked, occupied_threshold))
     _legend(figure, panels, kinds, ends=True, others=any(plan.others for plan in plans))
     return figure
 
@@ -245,7 +245,7 @@ def figure_of_samples(
     draw_map(axes, occupancy, blocked=blocked, occupied_threshold=occupied_threshold)
     draw_samples(axes, samples)
     axes.set_title(title, loc='left', fontsize=10.5, color=INK, pad=8)
-    kinds = np.unique(_kinds(occupancy, blocked, occupied_threshold))
+    kinds = np.unique(cell_kinds(occupancy, blocked, occupied_threshold))
     _legend(figure, [axes], kinds, ends=False)
     return figure
 
@@ -255,7 +255,7 @@ def save(figure: Figure, file: str | Path) -> None:
     figure.savefig(file, dpi=160, facecolor='white', bbox_inches='tight', pad_inches=0.12)
 
 
-def _kinds(
+def cell_kinds(
     occupancy: OccupancyMap, blocked: NDArray[np.bool_] | None, occupied_threshold: int
 ) -> NDArray[np.int8]:
     """Return what each cell (rows, cols) is, as a row of `KINDS`."""
@@ -274,7 +274,7 @@ def _to_map_frame(occupancy: OccupancyMap) -> Affine2D:
     return Affine2D().scale(occupancy.resolution).rotate(yaw).translate(x, y)
 
 
-def _limits(occupancy: OccupancyMap) -> NDArray[np.float64]:
+def known_box(occupancy: OccupancyMap) -> NDArray[np.float64]:
     """Return the box ((x, y) low, (x, y) high) [m] around the known cells, with a margin."""
     data = np.asarray(occupancy.data)
     known = (data >= 0) & (data <= 100)
@@ -308,7 +308,7 @@ def _ages(count: int) -> NDArray[np.float64]:
 
 def _panels(occupancy: OccupancyMap, count: int) -> tuple[Figure, list[Axes]]:
     """Return a figure of `count` panels, side by side, whose shape suits the map."""
-    width, height = np.ptp(_limits(occupancy), axis=0)
+    width, height = np.ptp(known_box(occupancy), axis=0)
     panel_width = 6.4 if count == 1 else 6.0
     panel_height = float(np.clip(panel_width * height / width, 2.2, 9.0))
     figure = Figure(figsize=(count * panel_width + 0.4, panel_height + 0.6), layout='constrained')

@@ -38,6 +38,8 @@ ROOMS = (
     'hnr_planner.core',
     'hnr_planner.maps',
     'hnr_planner.drawing',
+    'hnr_planner.experiments',
+    'hnr_planner.page',
     'hnr_planner.ros',
     'hnr_planner.demo',
     'hnr_planner.cli',
@@ -49,13 +51,16 @@ ON_PYPI = {'PIL': 'pillow', 'cv2': 'opencv-python-headless', 'yaml': 'pyyaml'}
 IN_ROSDEP = {
     'PIL': 'python3-pil',
     'cv2': 'python3-opencv',
+    'joblib': 'python3-joblib',
     'matplotlib': 'python3-matplotlib',
     'numpy': 'python3-numpy',
     'scipy': 'python3-scipy',
+    'tqdm': 'python3-tqdm',
     'yaml': 'python3-yaml',
 }
-# rosdep has a key for numba, but Ubuntu 24.04 no package; it has neither for arviz.
-NOT_IN_ROSDEP = {'arviz', 'numba'}
+# rosdep has a key for numba, but Ubuntu 24.04 no package; it has neither for arviz. Tests in a
+# browser are skipped where selenium is missing.
+NOT_IN_ROSDEP = {'arviz', 'numba', 'selenium'}
 # What is imported by one function only, for those who have it.
 OPTIONAL = {'arviz'}
 
@@ -310,3 +315,5 @@ def test_colcon_installs_all_of_it(
     where, *files = done.stdout.splitlines()
     assert Path(where).is_relative_to(workspace)
     assert set(files) == {path.relative_to(ROOT).as_posix() for path in PACKAGE.rglob('*.py')}
+    parts = {path.name for path in Path(where, 'page').glob('page.*')}
+    assert parts == {'page.css', 'page.html', 'page.js'}

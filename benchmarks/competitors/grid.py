@@ -8,8 +8,8 @@ import time
 from typing import Any
 
 from benchmarks.competitors.competitor import Competitor, Missing, Run, Solver, SolverOf
-from benchmarks.grid_search import a_star, pull_string, theta_star, wavefront
 from benchmarks.problems import Floats, Problem
+from hnr_planner.experiments.grid_search import a_star, pull_string, theta_star, wavefront
 import numpy as np
 
 #: Finds a path (m, 2) in cells on a compiled grid.

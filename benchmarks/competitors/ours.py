@@ -10,9 +10,9 @@ from typing import Any
 
 from benchmarks.competitors.competitor import Competitor, Run, Solver, SolverOf, TIME_LIMIT
 from benchmarks.competitors.grid import search_with
-from benchmarks.grid_search import wavefront
 from benchmarks.problems import Floats, Problem
 from hnr_planner.core import plan
+from hnr_planner.experiments.grid_search import wavefront
 import numpy as np
 
 #: A wavefront's time on a small map is no time to optimize in [s].

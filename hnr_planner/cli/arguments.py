@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 Number = TypeVar('Number', int, float)
 
 BAD_INPUT = 2
+PAGES = ('.html', '.htm')
 PICTURES = ('.png', '.svg', '.pdf')
 KINDS = {float: 'number', int: 'whole number'}
 PATIENCE = 2.0
@@ -93,6 +94,14 @@ def picture(text: str) -> Path:
     file = output_file(text)
     if file.suffix.lower() not in PICTURES:
         raise argparse.ArgumentTypeError(f'{text!r} does not end in one of {", ".join(PICTURES)}')
+    return file
+
+
+def page(text: str) -> Path:
+    """Return the path of a page that can be written, for argparse."""
+    file = output_file(text)
+    if file.suffix.lower() not in PAGES:
+        raise argparse.ArgumentTypeError(f'{text!r} does not end in one of {", ".join(PAGES)}')
     return file
 
 

@@ -13,7 +13,7 @@ import os
 import sys
 
 from hnr_planner import __version__
-from hnr_planner.cli import demo, plan, sample
+from hnr_planner.cli import demo, experiment, plan, sample
 from hnr_planner.cli.arguments import BAD_INPUT, BadInputError, CommandParser, error_line
 
 DESCRIPTION = 'Plan paths and draw uniform samples on occupancy maps.'
@@ -80,6 +80,6 @@ def build_parser() -> CommandParser:
     parser = CommandParser(prog='python -m hnr_planner', description=DESCRIPTION, epilog=EPILOG)
     parser.add_argument('--version', action='version', version=f'hnr_planner {__version__}')
     commands = parser.add_subparsers(title='commands', metavar='COMMAND', required=True)
-    for command in (plan, sample, demo):
+    for command in (plan, sample, demo, experiment):
         command.add_parser(commands)
     return parser

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import json
 import math
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from hnr_planner.cli.arguments import (
@@ -16,6 +17,7 @@ from hnr_planner.cli.arguments import (
     length,
     number,
     open_map,
+    page,
     picture,
     whole,
 )
@@ -118,6 +120,12 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
     parser.add_argument(
         '--plot', type=picture, metavar='FILE.png', help='draw map, samples and path'
     )
+    parser.add_argument(
+        '--html',
+        type=page,
+        metavar='FILE.html',
+        help='write a page that shows how the search unfolds, and those of the other algorithms',
+    )
     parser.set_defaults(run=run)
 
 
@@ -126,7 +134,7 @@ def run(arguments: argparse.Namespace) -> int:
     from hnr_planner.core import plan, PlannerStatus
 
     occupancy, space = open_map(arguments)
-    keep_map_files(arguments.map, arguments.plot)
+    keep_map_files(arguments.map, arguments.plot, arguments.html)
     compile_kernels()
     result = plan(
         space,
@@ -146,6 +154,10 @@ def run(arguments: argparse.Namespace) -> int:
         _draw(arguments, occupancy, space, result)
         if not arguments.json:
             print(f'picture     {arguments.plot}')
+    if arguments.html:
+        _write_page(arguments, occupancy, space, result)
+        if not arguments.json:
+            print(f'page        {arguments.html}')
     return 0 if result.status is PlannerStatus.SOLVED else NO_PATH
 
 
@@ -212,3 +224,44 @@ def _draw(
     )
     figure = drawing.figure_of_plans(occupancy, [shown], blocked=space.blocked)
     drawing.save(figure, arguments.plot)
+
+
+def _write_page(
+    arguments: argparse.Namespace, occupancy: OccupancyMap, space: GridSpace, result: PlanResult
+) -> None:
+    """Write the page: this search and those of the other algorithms, for the same request."""
+    from hnr_planner.core import plan
+    from hnr_planner.page import Shown, write_page
+
+    def search(algorithm: str, simplify: bool) -> PlanResult:
+        return plan(
+            space,
+            arguments.start,
+            arguments.goal,
+            algorithm=algorithm,
+            goal_radius=arguments.goal_radius,
+            time_limit=arguments.time_limit,
+            seed=result.seed,
+            simplify=simplify,
+        )
+
+    searches = [
+        Shown(
+            found=search(name, False),
+            result=result if name == result.planner else search(name, True),
+            asked=name == result.planner,
+        )
+        for name in ALGORITHM_NAMES
+        if name != 'auto'
+    ]
+    write_page(
+        arguments.html,
+        Path(arguments.map).stem,
+        occupancy,
+        space,
+        arguments.start,
+        arguments.goal,
+        searches,
+        goal_radius=arguments.goal_radius,
+        robot_radius=arguments.robot_radius,
+    )

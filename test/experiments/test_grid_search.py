@@ -3,8 +3,8 @@
 from test.brute_force import path_collisions
 from test.laws import maps
 
-from benchmarks.grid_search import a_star, pull_string, theta_star, wavefront
 from hnr_planner.core import GridSpace
+from hnr_planner.experiments.grid_search import a_star, pull_string, theta_star, wavefront
 import numpy as np
 from numpy.typing import NDArray
 import pytest

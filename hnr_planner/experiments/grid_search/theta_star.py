@@ -3,9 +3,9 @@
 from heapq import heappop, heappush
 import math
 
-from benchmarks.grid_search.cells import cell_of, may_step, STEPS, trace
 from hnr_planner.core.kernels import kernel
 from hnr_planner.core.spaces.primitives import sees
+from hnr_planner.experiments.grid_search.cells import cell_of, may_step, STEPS, trace
 import numpy as np
 
 

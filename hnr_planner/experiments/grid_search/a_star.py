@@ -2,8 +2,8 @@
 
 from heapq import heappop, heappush
 
-from benchmarks.grid_search.cells import cell_of, DIAGONAL, may_step, STEPS, trace
 from hnr_planner.core.kernels import kernel
+from hnr_planner.experiments.grid_search.cells import cell_of, DIAGONAL, may_step, STEPS, trace
 import numpy as np
 
 

@@ -2,8 +2,8 @@
 
 import math
 
-from benchmarks.grid_search.cells import cell_of, DIAGONAL, may_step, STEPS
 from hnr_planner.core.kernels import kernel
+from hnr_planner.experiments.grid_search.cells import cell_of, DIAGONAL, may_step, STEPS
 import numpy as np
 
 #: A wave spreads this far [cells] before its late cells are looked at.
@@ -18,16 +18,24 @@ def wavefront(grid, start, goal):
     The potential is a distance: at each cell a plane through its lower neighbours, raised by one
     cell. It spreads in waves, and each wave holds its late cells back for the next one.
     """
-    free_distance = grid.free_distance
-    columns = free_distance.shape[1]
-    potential = np.full(free_distance.size, np.inf, dtype=np.float32)
+    columns = grid.free_distance.shape[1]
     source, target = cell_of(start, columns), cell_of(goal, columns)
-    _spread(free_distance.ravel(), columns, target, potential)
+    distances = potential(grid, goal)
     path = [source]
     while path[-1] != target:
-        path.append(_lowest_neighbour(free_distance, potential, path[-1]))
+        path.append(_lowest_neighbour(grid.free_distance, distances, path[-1]))
     cells = np.array(path)
     return np.stack((cells % columns + 0.5, cells // columns + 0.5), axis=1)
+
+
+@kernel
+def potential(grid, goal):
+    """Return the way (rows * columns,) from every cell to the goal [cells]; inf without one."""
+    free_distance = grid.free_distance
+    columns = free_distance.shape[1]
+    distances = np.full(free_distance.size, np.inf, dtype=np.float32)
+    _spread(free_distance.ravel(), columns, cell_of(goal, columns), distances)
+    return distances
 
 
 @kernel

@@ -1,0 +1,89 @@
+"""Conduct an experiment: run what is missing on all cores, then write figure and tables."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+from hnr_planner.core import warm_up
+from hnr_planner.experiments.experiment import Experiment
+from hnr_planner.experiments.figures import save, sign
+from hnr_planner.experiments.results import made_with, Results, ResultsFile
+from joblib import delayed, Parallel
+from tqdm import tqdm
+
+
+def conduct(
+    experiment: Experiment,
+    runs: int,
+    folder: Path,
+    *,
+    n_jobs: int = -1,
+    fresh: bool = False,
+) -> Results:
+    """
+    Run every case of an experiment with the seeds 0 to ``runs - 1``.
+
+    The rows are computed by joblib, here by as many processes as there are cores; around a call,
+    ``joblib.parallel_config(backend='dask')`` and the like send them to a cluster instead. The
+    rows, and their order in the file, are the same however they were computed.
+
+    Parameters
+    ----------
+    experiment : Experiment
+        What to run.
+    runs : int
+        Runs of every case, at least 1.
+    folder : Path
+        Where NAME.csv, NAME.json (what the rows were made with), NAME.svg and NAME.md go. Rows
+        that are in NAME.csv already are kept.
+    n_jobs : int
+        Rows computed at the same time, as joblib counts: -1 for one on each core.
+    fresh : bool
+        Whether rows of before are thrown away.
+
+    Raises
+    ------
+    ResultsError
+        The rows that are there belong to other cases or to another core.
+
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    file = ResultsFile(folder / f'{experiment.name}.csv', experiment.cases(), fresh=fresh)
+    file.extend(_rows(experiment, file, runs, n_jobs))
+    results = file.read(runs)
+
+    signature = _signature(experiment, results)
+    figure = experiment.figure(results)
+    sign(figure, signature)
+    save(figure, folder / f'{experiment.name}.svg')
+    text = f'# {experiment.name}\n\n{experiment.about}\n\n{experiment.tables(results)}\n'
+    (folder / f'{experiment.name}.md').write_text(f'{text}{signature}.\n', encoding='utf-8')
+    return results
+
+
+def _rows(
+    experiment: Experiment, file: ResultsFile, runs: int, n_jobs: int
+) -> Iterator[tuple[object, int, dict[str, float]]]:
+    """Yield the missing rows in the order of the file, and show how far it is."""
+    done, missing = file.n_rows, file.tasks(runs)
+    if not missing:
+        return
+    warm_up()  # so that not every process compiles the same
+    compute = Parallel(n_jobs=n_jobs, return_as='generator')
+    computed = compute(delayed(experiment.run)(case, seed) for case, seed in missing)
+    bar = tqdm(
+        computed, experiment.name, initial=done, total=done + len(missing), unit='run', smoothing=0
+    )
+    for (case, seed), measured in zip(missing, bar, strict=True):
+        yield case, seed, measured
+
+
+def _signature(experiment: Experiment, results: Results) -> str:
+    """Return what was run, in one line."""
+    made = made_with()
+    return (
+        f'{results.runs} runs of each, seeds 0 to {results.runs - 1}. python -m hnr_planner '
+        f'experiment {experiment.name} --runs {results.runs}; hnr_planner {made["hnr_planner"]}, '
+        f'core {made["core"][:8]}'
+    )

@@ -1,0 +1,149 @@
+"""
+How the figures of the experiments look.
+
+Every algorithm has one colour, one mark and one name in all of them. The colours are those of
+Okabe and Ito, which people with any kind of colour vision can tell apart; the marks still tell
+when a figure is printed in grey. Lines are means, the bands around them their 95 % intervals.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Literal, NamedTuple
+
+from hnr_planner.drawing import FAINT_INK, INK
+from hnr_planner.experiments.results import Mean, Results
+from matplotlib import rc_context
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+import numpy as np
+from numpy.typing import ArrayLike
+
+
+class Look(NamedTuple):
+    """How an algorithm is shown."""
+
+    label: str
+    colour: str
+    mark: str
+
+
+LOOKS = {
+    'hit_and_run': Look('Hit-and-Run', '#0072B2', 'o'),
+    'rrt': Look('RRT', '#D55E00', 's'),
+    'auto': Look('trees of Hit-and-Run from both ends', '#009E73', '^'),
+    'a_star': Look('A*', '#CC79A7', 'D'),
+    'wavefront': Look('wavefront (as NavFn)', '#E69F00', 'v'),
+}
+Place = Literal['best', 'upper left', 'upper right', 'lower left', 'lower right']
+BAND = 0.18
+"""Opacity of an interval."""
+MANY = 15
+"""From so many points on a line has smaller marks."""
+
+
+def new_figure(width: float, height: float) -> Figure:
+    """Return an empty figure of a size [in], made without pyplot."""
+    figure = Figure(figsize=(width, height), layout='constrained')
+    FigureCanvasAgg(figure)
+    return figure
+
+
+def style(axes: Axes, title: str, x: str, y: str) -> None:
+    """Give axes their words, and little ink besides."""
+    axes.set_title(title, loc='left', fontsize=10.5, color=INK, pad=8)
+    axes.set_xlabel(x, color=INK, fontsize=9.5)
+    axes.set_ylabel(y, color=INK, fontsize=9.5)
+    axes.tick_params(colors=FAINT_INK, labelsize=9)
+    axes.grid(True, which='major', color='#E4E7EA', linewidth=0.8)
+    axes.set_axisbelow(True)
+    for side, spine in axes.spines.items():
+        spine.set_visible(side in ('left', 'bottom'))
+        spine.set_color('#B4BAC1')
+
+
+def draw_means(
+    axes: Axes,
+    results: Results,
+    x: str,
+    y: str,
+    look: Look,
+    *,
+    label: str | None = None,
+    line: str = '-',
+) -> None:
+    """Draw the mean of a column over another one, with its interval."""
+    places = sorted(results.distinct(x))
+    means = [results.where(**{x: place}).mean(y) for place in places]
+    draw_profile(axes, places, means, look, label=label, line=line)
+
+
+def draw_profile(
+    axes: Axes,
+    places: ArrayLike,
+    means: Sequence[Mean],
+    look: Look,
+    *,
+    label: str | None = None,
+    line: str = '-',
+) -> None:
+    """Draw means over their places, with their intervals."""
+    values, halves = np.array(means).T
+    axes.fill_between(
+        places, values - halves, values + halves, color=look.colour, alpha=BAND, linewidth=0
+    )
+    axes.plot(
+        places,
+        values,
+        line,
+        color=look.colour,
+        marker=look.mark,
+        markersize=5.5 if len(values) < MANY else 3.5,
+        markerfacecolor=look.colour if line == '-' else 'white',
+        linewidth=1.8,
+        label=label or look.label,
+    )
+
+
+def draw_bars(
+    axes: Axes,
+    names: Sequence[str],
+    groups: Sequence[tuple[str, Sequence[Mean]]],
+    colours: Sequence[str],
+) -> None:
+    """Draw a bar for each name in each group, the later groups lighter and below."""
+    thickness = 0.8 / len(groups)
+    at = np.arange(len(names))[::-1]
+    for k, (group, means) in enumerate(groups):
+        values, halves = np.array(means).T
+        axes.barh(
+            at + (0.5 * (len(groups) - 1) - k) * thickness,
+            values,
+            0.92 * thickness,
+            xerr=halves,
+            color=colours,
+            alpha=1.0 if k == 0 else 0.45,
+            error_kw={'ecolor': INK, 'elinewidth': 1.0},
+        )
+        axes.barh([0], [np.nan], color=FAINT_INK, alpha=1.0 if k == 0 else 0.45, label=group)
+    axes.set_yticks(at, names)
+
+
+def legend(axes: Axes, place: Place = 'best') -> None:
+    """Add the legend of axes at a place, as matplotlib calls it."""
+    axes.legend(loc=place, frameon=False, fontsize=9, labelcolor=INK)
+
+
+def sign(figure: Figure, text: str) -> None:
+    """Say at the foot of a figure what was run."""
+    figure.supxlabel(text, x=0.01, ha='left', fontsize=7.5, color=FAINT_INK)
+
+
+def save(figure: Figure, file: Path) -> None:
+    """Write a figure, to the byte the same for the same results."""
+    with rc_context({'svg.hashsalt': 'hnr_planner'}):
+        figure.savefig(
+            file, dpi=110, facecolor='white', metadata={'Date': None}, bbox_inches='tight'
+        )

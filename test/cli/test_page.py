@@ -1,0 +1,240 @@
+"""
+``plan --html``: a page that shows a search, looked at in a real browser.
+
+Without chromium and its driver (Debian: chromium, chromium-driver) these tests are skipped.
+"""
+
+from __future__ import annotations
+
+import base64
+from collections.abc import Callable, Iterator
+from io import BytesIO
+import json
+from pathlib import Path
+import re
+import shutil
+from test.cli.conftest import OFFICE, Ran
+from typing import Any
+
+from matplotlib.colors import to_rgb
+import numpy as np
+from PIL import Image
+import pytest
+
+webdriver = pytest.importorskip('selenium.webdriver', reason='needs selenium')
+from selenium.webdriver.chrome.service import Service  # noqa: E402
+from selenium.webdriver.common.action_chains import ActionChains  # noqa: E402
+from selenium.webdriver.common.by import By  # noqa: E402
+from selenium.webdriver.common.keys import Keys  # noqa: E402
+from selenium.webdriver.support.ui import WebDriverWait  # noqa: E402
+
+OPTIONS = (
+    '--headless --no-sandbox --disable-gpu --disable-quic --no-first-run --window-size=1400,860 '
+    '--disable-background-networking --disable-component-update --disable-sync '
+    '--host-resolver-rules=MAP\u00a0*\u00a0~NOTFOUND'
+)
+REQUEST = ('--start', 3, 22, '--goal', 34, 5, '--robot-radius', 0.22, '--seed', 3)
+SHOWN = {
+    'hit_and_run': '#0072B2',
+    'rrt': '#D55E00',
+    'hit_and_run_connect': '#009E73',
+    'rrt_connect': '#CC79A7',
+}
+PATIENCE = 60.0
+
+
+@pytest.fixture(scope='module')
+def browser() -> Iterator[Any]:
+    """Return a browser that reaches nothing but files."""
+    programs = [shutil.which(name) for name in ('chromium', 'chromedriver')]
+    if None in programs:
+        pytest.skip('needs chromium and chromedriver')
+    options = webdriver.ChromeOptions()
+    options.binary_location = programs[0]
+    for option in OPTIONS.split(' '):
+        options.add_argument(option.replace('\u00a0', ' '))
+    options.set_capability('goog:loggingPrefs', {'browser': 'ALL'})
+    driver = webdriver.Chrome(options=options, service=Service(programs[1]))
+    yield driver
+    driver.quit()
+
+
+@pytest.fixture
+def page(browser: Any, run: Callable[..., Ran], tmp_path: Path) -> Iterator[Page]:
+    """Return the page of a request on the office map; no script may have failed in the end."""
+    file = tmp_path / 'page.html'
+    ran = run('plan', OFFICE, *REQUEST, '--algorithm', 'hit_and_run', '--json', '--html', file)
+    assert ran.code == 0, ran.err
+    page = Page(browser, file, json.loads(ran.out))
+    yield page
+    assert page.errors() == []
+
+
+class Page:
+    """A page in the browser."""
+
+    def __init__(self, browser: Any, file: Path, result: dict[str, Any] | None = None) -> None:
+        """Open it, and stop what plays by itself."""
+        self.browser, self.file, self.result = browser, file, result
+        browser.get_log('browser')
+        browser.get(file.as_uri())
+
+    def errors(self) -> list[str]:
+        """Return what went wrong since the page was opened."""
+        return [line['message'] for line in self.browser.get_log('browser')]
+
+    def find(self, selector: str) -> Any:
+        return self.browser.find_element(By.CSS_SELECTOR, selector)
+
+    def text(self, selector: str) -> str:
+        return str(self.find(selector).text)
+
+    def time(self) -> int:
+        return int(self.find('#time').get_property('value'))
+
+    def wait(self, until: Callable[[], bool]) -> None:
+        WebDriverWait(self.browser, PATIENCE, 0.05).until(lambda _: until())
+
+    def pause(self) -> None:
+        button = self.find('#play')
+        if button.get_attribute('aria-label') == 'Pause':
+            button.click()
+
+    def go_to(self, key: str) -> None:
+        """Press Home or End on the slider."""
+        self.pause()
+        self.find('#time').send_keys(key)
+
+    def toggle(self, name: str) -> None:
+        self.find(f'#algorithms [data-name="{name}"]').click()
+
+    def pixels(self) -> np.ndarray:
+        """Return the colours (rows, columns, 3) of the canvas, once it is drawn."""
+        url = self.browser.execute_async_script(
+            'const done = arguments[0];'
+            'requestAnimationFrame(() => requestAnimationFrame(() =>'
+            "  done(document.getElementById('view').toDataURL())));"
+        )
+        written = base64.b64decode(url.partition(',')[2])
+        return np.asarray(Image.open(BytesIO(written)).convert('RGB'), dtype=int)
+
+    def has(self, colour: str) -> bool:
+        """Say whether a colour covers more than a few pixels."""
+        wanted = np.round(255 * np.array(to_rgb(colour)))
+        return int((np.abs(self.pixels() - wanted).max(axis=2) <= 3).sum()) > 150
+
+
+def test_it_is_one_file_that_loads_nothing(page: Page) -> None:
+    loaded = page.browser.execute_script(
+        "return performance.getEntriesByType('resource').map((entry) => entry.name)"
+    )
+    assert all(name.startswith('data:') for name in loaded)
+    assert not re.search(r'(src|href)="(?!data:)|@import|url\(', page.file.read_text())
+    assert page.file.stat().st_size < 1_000_000
+
+
+def test_a_script_that_fails_is_noticed(page: Page, tmp_path: Path) -> None:
+    broken = tmp_path / 'broken.html'
+    broken.write_text(
+        page.file.read_text().replace('function drawMap() {', 'function drawMap() {{')
+    )
+    assert Page(page.browser, broken).errors() != []
+    silent = tmp_path / 'silent.html'
+    silent.write_text(page.file.read_text().replace('drawEnds();', 'drawNothing();', 1))
+    failing = Page(page.browser, silent)
+    failing.wait(lambda: failing.errors() != [])
+    page.browser.get('about:blank')
+    page.errors()  # takes away those that were meant to be
+
+
+def test_it_holds_the_search_that_was_asked_for(page: Page) -> None:
+    data = json.loads(page.find('#data').get_property('textContent'))
+    assert {search['name']: search['colour'] for search in data['searches']} == SHOWN
+    (asked,) = (search for search in data['searches'] if search['asked'])
+    assert page.result is not None
+    assert asked['name'] == page.result['algorithm'] == 'hit_and_run'
+    assert asked['path'] == page.result['path']
+    assert asked['iterations'] == page.result['iterations']
+    samples = np.frombuffer(base64.b64decode(asked['samples']), '<f4').reshape(-1, 2)
+    # The chain of the walk is the path as it was found, up to the goal that its last one sees.
+    assert samples == pytest.approx(np.array(asked['found'])[:-1], rel=1e-6)
+    chords = np.frombuffer(base64.b64decode(asked['chords']), '<f4').reshape(-1, 2, 2)[1:]
+    along = chords[:, 1] - chords[:, 0]
+    to_sample, to_parent = samples[1:] - chords[:, 0], samples[:-1] - chords[:, 0]
+    for between in (to_sample, to_parent):
+        part = (between * along).sum(axis=1) / (along * along).sum(axis=1)
+        assert ((part > 0) & (part < 1)).all()
+        assert part[:, np.newaxis] * along == pytest.approx(between, abs=1e-4)
+
+
+def test_it_plays_to_the_end(page: Page) -> None:
+    page.pause()
+    began = page.time()
+    page.browser.execute_script('play(true)')
+    page.wait(lambda: page.time() > began)
+    page.find('#time').send_keys(Keys.END, Keys.ARROW_LEFT, Keys.ARROW_LEFT)
+    page.find('#play').click()
+    page.wait(lambda: page.time() == 1000)
+    assert page.text('#now') == 'done'
+    assert page.find('#play').get_attribute('aria-label') == 'Play'
+
+
+def test_the_search_unfolds_and_ends_in_the_path(page: Page) -> None:
+    page.go_to(Keys.HOME)
+    assert page.text('#now') == '1 samples'
+    assert not page.has(SHOWN['hit_and_run'])
+    page.go_to(Keys.END)
+    assert page.has(SHOWN['hit_and_run'])
+    for layer in ('samples', 'tree', 'chord', 'detours'):
+        page.find(f'#layers [name="{layer}"]').click()
+    assert page.has(SHOWN['hit_and_run'])
+    page.find('#layers [name="path"]').click()
+    assert not page.has(SHOWN['hit_and_run'])
+
+
+def test_algorithms_are_switched_on_and_off(page: Page) -> None:
+    page.go_to(Keys.END)
+    for name, colour in SHOWN.items():
+        assert page.has(colour) == (name == 'hit_and_run')
+        page.toggle(name)
+        assert page.has(colour) == (name != 'hit_and_run')
+
+
+def test_zoom_keeps_the_place_under_the_pointer_and_fit_comes_back(page: Page) -> None:
+    page.go_to(Keys.END)
+    whole = page.pixels()
+    canvas = page.find('#view')
+    ActionChains(page.browser).move_to_element_with_offset(canvas, -100, -50).perform()
+    place, scale = page.text('#place'), page.text('#scale')
+    page.browser.execute_script(
+        'document.getElementById("view").dispatchEvent(new WheelEvent("wheel", '
+        '{deltaY: -600, clientX: 600, clientY: 350}))'
+    )
+    assert not np.array_equal(page.pixels(), whole)
+    assert page.text('#scale') != scale
+    page.find('#fit').click()
+    assert np.array_equal(page.pixels(), whole)
+    ActionChains(page.browser).drag_and_drop_by_offset(canvas, 60, 30).perform()
+    assert not np.array_equal(page.pixels(), whole)
+    ActionChains(page.browser).move_to_element_with_offset(canvas, -40, -20).perform()
+    assert page.text('#place') == place
+
+
+def test_a_search_without_a_path_is_shown_too(
+    browser: Any, run: Callable[..., Ran], rooms_file: Path, tmp_path: Path
+) -> None:
+    file = tmp_path / 'page.html'
+    ran = run(
+        'plan', rooms_file, '--start', -1.5, 3.5, '--goal', 2.5, 8.4, '--html', file, '--seed', 1
+    )  # the goal lies in the closed cupboard
+    assert ran.code == 1, ran.out
+    page = Page(browser, file)
+    page.go_to(Keys.END)
+    assert 'unreachable' in page.text('#algorithms')
+    assert page.errors() == []
+
+
+def test_a_page_with_another_ending_is_refused(run: Callable[..., Ran], tmp_path: Path) -> None:
+    ran = run('plan', OFFICE, *REQUEST, '--html', tmp_path / 'page.png')
+    assert ran.code == 2
+    assert 'does not end in one of .html, .htm' in ran.err

@@ -1,0 +1,86 @@
+"""Every experiment runs, repeats itself, and draws what it measured."""
+
+from pathlib import Path
+
+from hnr_planner.core import GridSpace
+from hnr_planner.experiments import clouds, load, NAMES, safety
+from hnr_planner.experiments.conduct import conduct
+import numpy as np
+import pytest
+
+
+@pytest.mark.parametrize('name', NAMES)
+def test_every_experiment_runs_and_repeats_itself(
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.delenv('HNR_MAPS', raising=False)
+    experiment = load(name)
+    assert experiment.name == name
+    results = conduct(experiment, 1, tmp_path, n_jobs=1)
+    cases = experiment.cases()
+    assert len(results) == len(cases)
+    for k in (0, len(cases) - 1):
+        again = experiment.run(cases[k], 0)
+        assert {column: results[column][k] for column in again} == pytest.approx(
+            dict(again), rel=0.0, abs=0.0, nan_ok=True
+        )
+    assert (tmp_path / f'{name}.svg').stat().st_size < 800_000
+
+
+# -- safety
+
+
+def test_clearance_is_measured_along_the_whole_path() -> None:
+    blocked = np.zeros((60, 200), dtype=bool)
+    blocked[0] = True
+    space = GridSpace.from_blocked(blocked, 0.1)
+    # 8 m at .25 m from the wall, then 4 m straight away from it.
+    path = np.array([[1.0, 0.35], [9.0, 0.35], [9.0, 4.35]])
+    measured = safety.measures(space, path)
+    assert measured['length'] == pytest.approx(12.0)
+    assert measured['least'] == pytest.approx(0.25 - safety.ROBOT_RADIUS, abs=1e-9)
+    mean = (8.0 * 0.25 + 4.0 * 2.25) / 12.0 - safety.ROBOT_RADIUS
+    assert measured['mean'] == pytest.approx(mean, abs=0.01)
+    near = (8.0 + safety.ROBOT_RADIUS + safety.NEAR - 0.25) / 12.0
+    assert measured['near'] == pytest.approx(near, abs=0.01)
+    assert measured['near_length'] == pytest.approx(12.0 * near, abs=0.05)
+
+
+# -- clouds
+
+
+@pytest.fixture(scope='module')
+def corridor() -> clouds.Corridor:
+    return clouds.corridor_of(clouds.SHOWN_WIDTH)
+
+
+def test_slices_have_equal_areas_from_start_to_goal(corridor: clouds.Corridor) -> None:
+    free = corridor.way[np.isfinite(corridor.way)]
+    counts = np.histogram(free, corridor.edges)[0]
+    assert counts == pytest.approx(np.full(clouds.N_SLICES, counts.mean()), rel=0.02)
+    assert corridor.edges[0] == 0.0
+    assert corridor.edges[-1] == pytest.approx(1.0, abs=0.05)
+
+
+def test_uniform_points_are_even_and_others_are_not() -> None:
+    """
+    The distance of 400 uniform points in 40 slices from even ones is .125 with spread .016.
+
+    So .04 off .125 in the mean of 20 runs is 11 standard deviations.
+    """
+    case = clouds.Case(clouds.SHOWN_WIDTH, clouds.UNIFORM)
+    runs = [clouds.run(case, seed) for seed in range(20)]
+    assert np.mean([run['uneven'] for run in runs]) == pytest.approx(0.125, abs=0.04)
+    layers = np.array([[run[f'layer_{k}'] for k in range(clouds.N_LAYERS)] for run in runs])
+    assert layers.mean(axis=0) == pytest.approx(np.ones(clouds.N_LAYERS), abs=0.1)
+    walk = clouds.run(clouds.Case(clouds.SHOWN_WIDTH, 'rrt'), 0)
+    assert walk['uneven'] > 0.17
+    assert walk['on_wall'] > 0.01
+
+
+def test_arrivals_are_in_order_and_the_last_one_is_the_goal() -> None:
+    measured = clouds.run(clouds.Case(clouds.SHOWN_WIDTH, 'hit_and_run'), 3)
+    arrivals = [measured[f'arrival_{k + 1}'] for k in range(clouds.N_PARTS)]
+    assert arrivals == sorted(arrivals)
+    assert arrivals[0] > 0
+    assert arrivals[-1] == measured['transitions']
