@@ -33,6 +33,7 @@ ROOMS = (
     'hnr_planner.core.lengths',
     'hnr_planner.core.trees',
     'hnr_planner.core.spaces',
+    'hnr_planner.core.systems',
     'hnr_planner.core.sampling',
     'hnr_planner.core.planning',
     'hnr_planner.core',

@@ -1,0 +1,211 @@
+"""
+Curves that a robot follows, and where they leave a space.
+
+Under constant controls a robot runs along a parabola or an arc. Each coordinate of such a curve is
+a function of one parameter for which everything that contact asks is closed form: its value, where
+it turns, and where it reaches a value before it turns. So the first contact with a boundary is
+found as a root, never by stepping along.
+
+``leave_curve(space, curve, end) -> float``
+    The first parameter in [0, ``end``] at which the curve is not free; inf for none. A kernel for
+    it is registered for each kind of compiled space that can answer.
+"""
+
+import math
+from typing import Any, NamedTuple
+
+from hnr_planner.core.checks import Floats
+from hnr_planner.core.kernels import interpreted, kernel
+from numba.core.dispatcher import Dispatcher
+from numba.extending import overload
+
+#: A turning point of an arc nearer than this part of half a circle is the one just passed.
+SAME_TURN = 1e-9
+
+
+class Parabola(NamedTuple):
+    """The points ``position + velocity t + acceleration t^2 / 2``, all (dim,)."""
+
+    position: Floats
+    velocity: Floats
+    acceleration: Floats
+
+
+class Arc(NamedTuple):
+    """The arc from ``position`` (2,), by its length; ``curvature`` > 0 turns to the left."""
+
+    position: Floats
+    heading: float
+    curvature: float
+
+
+class Quadratic(NamedTuple):
+    """The function ``start + slope t + change t^2 / 2``: a coordinate of a parabola."""
+
+    start: float
+    slope: float
+    change: float
+
+
+class Winding(NamedTuple):
+    """``start`` and the integral of ``cos(angle + curvature s)``: a coordinate of an arc."""
+
+    start: float
+    angle: float
+    curvature: float
+
+
+@kernel
+def _parabola_coordinate(curve, i):
+    return Quadratic(curve.position[i], curve.velocity[i], curve.acceleration[i])
+
+
+@kernel
+def _arc_coordinate(curve, i):
+    return Winding(curve.position[i], curve.heading - i * (math.pi / 2.0), curve.curvature)
+
+
+@kernel
+def _quadratic_at(f, t):
+    return f.start + t * (f.slope + t * (f.change / 2.0))
+
+
+@kernel
+def _quadratic_turn(f, t):
+    turn = -f.slope / f.change if f.change != 0.0 else math.inf
+    return turn if turn > t else math.inf
+
+
+@kernel
+def _quadratic_reach(f, value, t):
+    """Solve for the way from ``t`` on, in the form that subtracts nothing."""
+    slope, away = f.slope + f.change * t, value - _quadratic_at(f, t)
+    if away == 0.0:
+        return t
+    squared = slope * slope + 2.0 * f.change * away
+    if squared < 0.0:
+        return math.inf
+    return t + 2.0 * away / (slope + math.copysign(math.sqrt(squared), away))
+
+
+@kernel
+def _winding_at(f, s):
+    """Go along the chord: its length is that of the arc times sin(h) / h, its angle the mean."""
+    half = f.curvature * s / 2.0
+    shrink = math.sin(half) / half if half != 0.0 else 1.0
+    return f.start + s * shrink * math.cos(f.angle + half)
+
+
+@kernel
+def _winding_turn(f, s):
+    if f.curvature == 0.0:
+        return math.inf
+    turns = (f.angle + f.curvature * s) / math.pi - 0.5
+    k = math.floor(turns) + 1.0 if f.curvature > 0.0 else math.ceil(turns) - 1.0
+    turn = (math.pi * (k + 0.5) - f.angle) / f.curvature
+    half_circle = math.pi / abs(f.curvature)
+    return turn if turn > s + SAME_TURN * half_circle else turn + half_circle
+
+
+@kernel
+def _winding_reach(f, value, s):
+    """Solve for tan(h), where h is half the angle turned from ``s`` on: a quadratic as above."""
+    angle, away = f.angle + f.curvature * s, value - _winding_at(f, s)
+    if away == 0.0:
+        return s
+    bend = f.curvature * away
+    slope = math.cos(angle)
+    squared = slope * slope - bend * (bend + 2.0 * math.sin(angle))
+    if squared < 0.0:
+        return math.inf
+    tangent = away / (slope + math.copysign(math.sqrt(squared), away))
+    if f.curvature == 0.0:
+        return s + 2.0 * tangent
+    return s + 2.0 * math.atan(f.curvature * tangent) / f.curvature
+
+
+class Coordinate(NamedTuple):
+    """The kernels of one kind of coordinate."""
+
+    at: Dispatcher
+    turn: Dispatcher
+    reach: Dispatcher
+
+
+_COORDINATE = {Parabola: _parabola_coordinate, Arc: _arc_coordinate}
+_COORDINATES = {
+    Quadratic: Coordinate(_quadratic_at, _quadratic_turn, _quadratic_reach),
+    Winding: Coordinate(_winding_at, _winding_turn, _winding_reach),
+}
+_LEAVE_CURVE: dict[type, Dispatcher] = {}
+
+
+def register_curves(data_type: type, leave: Dispatcher) -> None:
+    """Let ``leave_curve`` answer for NamedTuples of ``data_type``."""
+    _LEAVE_CURVE[data_type] = leave
+
+
+def knows_curves(data: Any) -> bool:
+    """Say whether it is known where curves leave a compiled space."""
+    return type(data) in _LEAVE_CURVE
+
+
+def coordinate(curve: Any, i: int) -> Any:
+    """Return coordinate ``i`` of a curve, as a function of its parameter."""
+    return interpreted(_COORDINATE[type(curve)])(curve, i)
+
+
+def at(f: Any, t: float) -> float:
+    """Return the value of a coordinate at ``t``."""
+    return interpreted(_COORDINATES[type(f)].at)(f, t)
+
+
+def turn(f: Any, t: float) -> float:
+    """Return the first parameter > ``t`` at which a coordinate turns; inf for none."""
+    return interpreted(_COORDINATES[type(f)].turn)(f, t)
+
+
+def reach(f: Any, value: float, t: float) -> float:
+    """Return where a coordinate has ``value``, between ``t`` and its next turn; inf for never."""
+    return interpreted(_COORDINATES[type(f)].reach)(f, value, t)
+
+
+def leave_curve(space: Any, curve: Any, end: float) -> float:
+    """Return the first parameter in [0, ``end``] at which a curve is not free; inf for none."""
+    return interpreted(_LEAVE_CURVE[type(space)])(space, curve, end)
+
+
+@overload(coordinate)
+def _compiled_coordinate(curve, i):
+    compiled = _COORDINATE[curve.instance_class]
+    return lambda curve, i: compiled(curve, i)
+
+
+@overload(at)
+def _compiled_at(f, t):
+    compiled = _COORDINATES[f.instance_class].at
+    return lambda f, t: compiled(f, t)
+
+
+@overload(turn)
+def _compiled_turn(f, t):
+    compiled = _COORDINATES[f.instance_class].turn
+    return lambda f, t: compiled(f, t)
+
+
+@overload(reach)
+def _compiled_reach(f, value, t):
+    compiled = _COORDINATES[f.instance_class].reach
+    return lambda f, value, t: compiled(f, value, t)
+
+
+@overload(leave_curve)
+def _compiled_leave_curve(space, curve, end):
+    compiled = _LEAVE_CURVE[space.instance_class]
+    return lambda space, curve, end: compiled(space, curve, end)
+
+
+@kernel
+def leave_curve_from(space, curve, end):
+    """Return what ``leave_curve`` does, for Python."""
+    return leave_curve(space, curve, end)

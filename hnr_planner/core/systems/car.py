@@ -1,0 +1,213 @@
+"""
+A planar base with bounded speed, acceleration and curvature: a car, or a unicycle that rolls.
+
+Under constant controls it runs along an arc, whatever its speed does on the way: the contact with
+a boundary is one of the arc.
+"""
+
+from dataclasses import dataclass
+import math
+from typing import ClassVar, NamedTuple
+
+from hnr_planner.core.checks import check_number, check_point, Floats
+from hnr_planner.core.errors import RequestError
+from hnr_planner.core.kernels import kernel
+from hnr_planner.core.spaces.curves import Arc, at, coordinate, leave_curve
+from hnr_planner.core.spaces.space import Space
+from hnr_planner.core.systems.limits import check_limit
+from hnr_planner.core.systems.primitives import moved, register_system, SystemPrimitives
+from hnr_planner.core.systems.system import ROUNDING, vectors_to_kernel
+import numpy as np
+from numpy.typing import ArrayLike
+
+X, Y, HEADING, SPEED = range(4)
+
+
+class CarData(NamedTuple):
+    """A compiled car: its limits."""
+
+    max_acceleration: float
+    max_speed: float
+    max_curvature: float
+
+
+@dataclass(frozen=True)
+class Car:
+    """
+    A planar base that goes where it points, forwards and backwards.
+
+    A state is (x, y, heading, speed) [m, m, rad, m/s], a speed below 0 goes backwards. A control
+    is (acceleration, curvature) [m/s^2, 1/m], curvature above 0 turns left. Curvature may jump:
+    a base that steers slowly stops for it, or follows with a small error.
+
+    Attributes
+    ----------
+    max_acceleration : float
+        Largest change of speed in a second [m/s^2], above 0.
+    max_speed : float
+        Largest speed, forwards and backwards [m/s], above 0.
+    max_curvature : float
+        Inverse of the smallest turning radius [1/m], above 0.
+
+    """
+
+    max_acceleration: float = 1.0
+    max_speed: float = 1.0
+    max_curvature: float = 1.0
+
+    dim: ClassVar[int] = 2
+    state_dim: ClassVar[int] = 4
+    control_dim: ClassVar[int] = 2
+
+    def __post_init__(self) -> None:
+        for name in ('max_acceleration', 'max_speed', 'max_curvature'):
+            object.__setattr__(self, name, check_limit(name, getattr(self, name)))
+
+    @property
+    def data(self) -> CarData:
+        """The compiled system in the caller's units."""
+        return CarData(self.max_acceleration, self.max_speed, self.max_curvature)
+
+    def check_state(self, name: str, state: ArrayLike) -> Floats:
+        """Return a state (4,) within the speed limit, or raise RequestError."""
+        checked = check_point(name, state, self.state_dim)
+        if self.speed(checked) > self.max_speed * (1.0 + ROUNDING):
+            raise RequestError(
+                f'{name} must be no faster than max_speed, {self.max_speed:g} m/s, '
+                f'got {float(checked[SPEED])!r} m/s'
+            )
+        return checked
+
+    def propagate(self, state: ArrayLike, control: ArrayLike, duration: float) -> Floats:
+        """Return the state (4,) after ``duration`` [s] under a constant control."""
+        start = check_point('state', state, self.state_dim)
+        checked = check_point('control', control, self.control_dim)
+        return moved(self.data, start, checked, check_number('duration', duration, 0.0))
+
+    def speed(self, state: Floats) -> float:
+        """Return the speed [m/s] of a state, forwards or backwards."""
+        return abs(float(state[SPEED]))
+
+    def distance(self, state: Floats, control: Floats, duration: float) -> float:
+        """Return the length [m] of the way in ``duration`` [s], back and forth."""
+        speed, acceleration = float(state[SPEED]), float(control[0])
+        rest = -speed / acceleration if acceleration != 0.0 else math.inf
+        if 0.0 < rest < duration:
+            there, back = speed * rest / 2.0, acceleration * (duration - rest) ** 2 / 2.0
+            return abs(there) + abs(back)
+        return abs(duration * (speed + acceleration * duration / 2.0))
+
+    def compiled(self, space: Space) -> CarData:
+        """Return the compiled system in the kernel frame of a space."""
+        scale = space.scale
+        return CarData(
+            self.max_acceleration / scale, self.max_speed / scale, self.max_curvature * scale
+        )
+
+    def to_kernel(self, space: Space, state: Floats) -> Floats:
+        """Bring a state (4,) into the kernel frame of a space."""
+        x, y = space.to_kernel(state[:HEADING])
+        return np.array([x, y, state[HEADING] + _turn(space), state[SPEED] / space.scale])
+
+    def from_kernel(self, space: Space, states: Floats) -> Floats:
+        """Bring states (k, 4) out of the kernel frame of a space."""
+        headings, speeds = states[:, HEADING] - _turn(space), states[:, SPEED] * space.scale
+        return np.column_stack([space.from_kernel(states[:, :HEADING]), headings, speeds])
+
+    def controls_to_kernel(self, space: Space, controls: Floats) -> Floats:
+        """Bring controls (k, 2) into the kernel frame of a space."""
+        return controls * (1.0 / space.scale, space.scale)
+
+    def controls_from_kernel(self, space: Space, controls: Floats) -> Floats:
+        """Bring controls (k, 2) out of the kernel frame of a space."""
+        return controls * (space.scale, 1.0 / space.scale)
+
+
+def _turn(space: Space) -> float:
+    """Angle by which directions turn on their way into the kernel frame."""
+    x, y = vectors_to_kernel(space, np.array([1.0, 0.0]))
+    return math.atan2(y, x)
+
+
+@kernel
+def _move(system, state, control, duration, end):
+    way = duration * (state[SPEED] + duration * control[0] / 2.0)
+    arc = Arc(state[:HEADING], state[HEADING], control[1])
+    x, y = at(coordinate(arc, 0), way), at(coordinate(arc, 1), way)
+    end[HEADING] = state[HEADING] + control[1] * way
+    end[SPEED] = state[SPEED] + control[0] * duration
+    end[X], end[Y] = x, y
+
+
+@kernel
+def _contact(system, space, state, control, duration):
+    """Follow the arc to where the speed changes its sign, if it does, and back from there."""
+    speed, acceleration = state[SPEED], control[0]
+    rest = -speed / acceleration if acceleration != 0.0 else math.inf
+    if not 0.0 < rest < duration:
+        return _one_way(space, state, control, duration)
+    first = _one_way(space, state, control, rest)
+    if first <= rest:
+        return first
+    turned = state.copy()
+    _move(system, state, control, rest, turned)
+    turned[SPEED] = 0.0
+    return rest + _one_way(space, turned, control, duration - rest)
+
+
+@kernel
+def _one_way(space, state, control, duration):
+    """First contact while the speed keeps its sign; the arc is followed by its length."""
+    way = duration * (state[SPEED] + duration * control[0] / 2.0)
+    heading = state[HEADING] if way >= 0.0 else state[HEADING] + math.pi
+    curvature = math.copysign(control[1], control[1] * way)
+    left = leave_curve(space, Arc(state[:HEADING], heading, curvature), abs(way))
+    if left > abs(way):
+        return math.inf
+    speed, acceleration = abs(state[SPEED]), math.copysign(control[0], control[0] * way)
+    if left == 0.0:
+        return 0.0
+    squared = max(speed * speed + 2.0 * acceleration * left, 0.0)
+    return min(2.0 * left / (speed + math.sqrt(squared)), duration)
+
+
+@kernel
+def _steer(system, state, position, velocity, weight, duration, control):
+    """
+    Take the arc that leads through the desired position, as fast as the desired speed allows.
+
+    The arc through a point ``d`` away at an angle ``b`` has curvature 2 sin(b) / d. Backwards
+    where the position lies behind. The speed wanted is the desired one, and no faster than what
+    brings the base there in one step.
+    """
+    dx, dy = position[0] - state[X], position[1] - state[Y]
+    ahead = dx * math.cos(state[HEADING]) + dy * math.sin(state[HEADING])
+    aside = dy * math.cos(state[HEADING]) - dx * math.sin(state[HEADING])
+    squared = dx * dx + dy * dy
+    curvature = 2.0 * aside / squared if squared > 0.0 else 0.0
+    control[1] = min(max(curvature, -system.max_curvature), system.max_curvature)
+    wanted = min(math.hypot(velocity[0], velocity[1]), math.sqrt(squared) / duration)
+    wanted = min(wanted, system.max_speed)
+    change = (math.copysign(wanted, ahead) - state[SPEED]) / duration
+    control[0] = min(max(change, -system.max_acceleration), system.max_acceleration)
+
+
+@kernel
+def _brake(system, state, control):
+    control[0] = -math.copysign(system.max_acceleration, state[SPEED])
+    control[1] = 0.0
+    return abs(state[SPEED]) / system.max_acceleration
+
+
+@kernel
+def _halt(system, state):
+    state[SPEED] = 0.0
+
+
+@kernel
+def _velocity(system, state, out):
+    out[0] = state[SPEED] * math.cos(state[HEADING])
+    out[1] = state[SPEED] * math.sin(state[HEADING])
+
+
+register_system(CarData, SystemPrimitives(_move, _contact, _steer, _brake, _halt, _velocity))
