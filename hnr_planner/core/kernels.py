@@ -66,15 +66,25 @@ def cache_folder() -> Path:
         return temporary
 
 
-def kernel(function: Callable[..., Any]) -> Dispatcher:
+def kernel(function: Callable[..., Any], **more: Any) -> Dispatcher:
     """Compile ``function`` at its first call: no GIL, cached, IEEE arithmetic kept to the bit."""
     numba_config: Any = config
     before = numba_config.CACHE_DIR
     numba_config.CACHE_DIR = str(cache_folder())
     try:
-        return njit(cache=True, **OPTIONS)(function)
+        return njit(cache=True, **OPTIONS, **more)(function)
     finally:
         numba_config.CACHE_DIR = before
+
+
+def inlined(function: Callable[..., Any]) -> Dispatcher:
+    """
+    Compile a kernel whose code is put in wherever a kernel calls it.
+
+    A call hands on every field of every array: for the small parts of an inner loop that is more
+    work than they do themselves.
+    """
+    return kernel(function, forceinline=True)
 
 
 def compiled_apart(function: Dispatcher) -> Dispatcher:

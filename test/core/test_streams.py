@@ -9,7 +9,7 @@ import itertools
 
 from hnr_planner.core import streams
 from hnr_planner.core.kernels import interpreted, kernel
-from hnr_planner.core.streams import normal, stream, uniform
+from hnr_planner.core.streams import draw_normals, normal, stream, uniform
 import numpy as np
 import pytest
 from scipy import stats
@@ -57,6 +57,13 @@ def drawn(rng, n):
     return uniforms, normals
 
 
+@kernel
+def drawn_at_once(rng, n):
+    """Draw (n,) normal numbers, and return them with their squared length."""
+    normals = np.empty(n)
+    return normals, draw_normals(rng, normals)
+
+
 def test_numbers_are_those_of_the_published_generator():
     rng = stream(1)
     words = xoshiro256pp(int(word) for word in rng)
@@ -83,10 +90,38 @@ def test_each_seed_and_purpose_has_a_stream_of_its_own():
 
 
 def test_compiled_and_interpreted_streams_are_the_same():
-    compiled = drawn(stream(5), 500)
+    compiled = drawn(stream(5), 3000)
     with np.errstate(over='ignore'):
-        plain = interpreted(drawn)(stream(5), 500)
+        plain = interpreted(drawn)(stream(5), 3000)
     np.testing.assert_array_equal(compiled, plain)
+
+
+def test_normals_drawn_at_once_are_those_drawn_one_by_one():
+    rng, another = stream(8), stream(8)
+    drawn(another, 0)
+    normals, squared = drawn_at_once(rng, 3000)
+    one_by_one = [interpreted_normal(another) for _ in range(3000)]
+    assert normals.tolist() == one_by_one
+    assert rng.tolist() == another.tolist()
+    assert squared == pytest.approx(normals @ normals, rel=1e-12)
+    with np.errstate(over='ignore'):
+        plain, plain_squared = interpreted(drawn_at_once)(stream(8), 3000)
+    assert plain.tolist() == one_by_one
+    assert plain_squared == squared
+
+
+def interpreted_normal(rng):
+    with np.errstate(over='ignore'):
+        return interpreted(normal)(rng)
+
+
+def test_layers_of_the_normal_law_have_one_area_and_cover_the_density():
+    edges, heights = streams._EDGES, streams._HEIGHTS
+    areas = edges[1:-1] * np.diff(heights)[1:]
+    tail = np.sqrt(2.0 * np.pi) * stats.norm.sf(streams._TAIL)
+    np.testing.assert_allclose(areas, streams._AREA, rtol=1e-9)
+    assert edges[1] * heights[1] + tail == pytest.approx(streams._AREA, rel=1e-9)
+    assert (edges[-1], heights[-1]) == (0.0, 1.0)
 
 
 def p_value_uniform(draws):
@@ -114,6 +149,25 @@ def test_the_first_draws_of_neighbouring_streams_are_unrelated():
     firsts = np.array([drawn(stream(9, k), 1)[0][0] for k in range(20_000)])
     assert p_value_uniform(firsts) > FALSE_ALARM
     assert p_value_pairs(firsts) > FALSE_ALARM
+
+
+def p_value_far_normals(draws):
+    """Chi-square of what lies where the ziggurat has its corners: beyond 3 in steps of .2."""
+    ends = np.append(np.arange(3.0, 4.4, 0.2), np.inf)
+    counts = np.histogram(np.abs(draws), bins=np.append(0.0, ends))[0]
+    expected = 2.0 * np.diff(stats.norm.cdf(np.append(0.0, ends))) * len(draws)
+    return stats.chisquare(counts, expected).pvalue
+
+
+def test_far_normal_draws_have_their_law():
+    """With 10 million draws; the same draws without the tail, or with one too thin, are caught."""
+    normals, _ = drawn_at_once(stream(4), 10_000_000)
+    assert p_value_far_normals(normals) > FALSE_ALARM
+    assert p_value_uniform(stats.norm.cdf(normals[:2_000_000])) > FALSE_ALARM
+    tail = np.abs(normals) > streams._TAIL
+    assert p_value_far_normals(normals[~tail]) < FALSE_ALARM
+    thin = np.where(tail, streams._TAIL + 0.8 * (np.abs(normals) - streams._TAIL), normals)
+    assert p_value_far_normals(thin) < FALSE_ALARM
 
 
 @pytest.mark.parametrize(

@@ -8,9 +8,9 @@ the boundary: points of the space stay points of the space.
 
 import math
 
-from hnr_planner.core.kernels import kernel
+from hnr_planner.core.kernels import inlined, kernel
 from hnr_planner.core.spaces.primitives import contains, leave
-from hnr_planner.core.streams import normal, uniform
+from hnr_planner.core.streams import draw_normals, uniform
 import numpy as np
 
 #: After so many draws in a row on the boundary the chord holds no other number: the walk stays.
@@ -33,20 +33,15 @@ def coordinate_hit_and_run_step(space, x, rng, y):
     return draw_on_chord(space, x, u, rng, y)
 
 
-@kernel
+@inlined
 def draw_direction(rng, u):
     """Draw ``u`` uniformly from the unit sphere."""
-    if len(u) == 2:
-        angle = 2.0 * math.pi * uniform(rng)
-        u[0], u[1] = math.cos(angle), math.sin(angle)
-        return
     squared = 0.0
     while squared == 0.0:
-        for i in range(len(u)):
-            u[i] = normal(rng)
-            squared += u[i] * u[i]
+        squared = draw_normals(rng, u)
+    scale = 1.0 / math.sqrt(squared)
     for i in range(len(u)):
-        u[i] /= math.sqrt(squared)
+        u[i] *= scale
 
 
 @kernel
