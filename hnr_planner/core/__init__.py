@@ -14,6 +14,7 @@ from hnr_planner.core.planning.result import FirstSolution, PlannerStatus, PlanR
 from hnr_planner.core.planning.roadmap.roadmap import Roadmap
 from hnr_planner.core.planning.rrt import RRT
 from hnr_planner.core.planning.simplify import simplify
+from hnr_planner.core.sampling.free_space import FreeSpaceDraws, sample_free_space
 from hnr_planner.core.sampling.sample import sample, WALKS
 from hnr_planner.core.spaces import (
     BallSpace,
@@ -38,6 +39,7 @@ __all__ = [
     'Chord',
     'DifferenceSpace',
     'FirstSolution',
+    'FreeSpaceDraws',
     'GridSpace',
     'HitAndRun',
     'HnrError',
@@ -52,6 +54,7 @@ __all__ = [
     'UnionSpace',
     'plan',
     'sample',
+    'sample_free_space',
     'simplify',
     'warm_up',
 ]
