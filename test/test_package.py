@@ -26,6 +26,7 @@ MODULES = {
 # The first name that a module's name begins with is its room.
 ROOMS = (
     'hnr_planner.core.errors',
+    'hnr_planner.core.cancellation',
     'hnr_planner.core.checks',
     'hnr_planner.core.kernels',
     'hnr_planner.core.borrowed',

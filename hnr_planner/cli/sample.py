@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Iterable
+from collections.abc import Iterator
 import secrets
 import sys
 from typing import TextIO, TYPE_CHECKING
@@ -30,11 +30,15 @@ EPILOG = """\
 example:
   python -m hnr_planner sample office.yaml --n 1000 --csv points.csv --plot points.png
 
-The points are those of a random walk. Left to itself, the walk starts at a uniform point of the
-largest connected free part of the map, so every one of its points is uniform there; neighbours
-in the list depend on each other. With --start it walks on the part in which the start lies, and
-the first points are still near the start. --thin K lets the walk take K steps for each point:
-the points depend less on each other. The same seed gives the same points.
+The points are those of a random walk. Left to itself, it draws from all of the free space, and
+every point is uniform there. No walk leads from one connected part to another, so there is one in
+each, which starts at a uniform point of it; at every point the walk of one part moves on, picked
+with the probability of its share of the area. With --start there is a walk in the part in which
+the start lies, and the first points are still near the start.
+
+Points of one walk depend on each other. --thin K lets the walk take K steps for each point: the
+points depend less on each other. --chains K draws N points K times, independently; the list then
+has a third column, the number of the chain from 0. The same seed gives the same points.
 """
 
 
@@ -62,11 +66,18 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
         help='keep every K-th point of the walk and drop those between; default 1, every point',
     )
     parser.add_argument(
+        '--chains',
+        type=count,
+        default=1,
+        metavar='K',
+        help='draw N points so many times, independently of each other; default 1',
+    )
+    parser.add_argument(
         '--start',
         type=number,
         nargs=2,
         metavar=('X', 'Y'),
-        help='where the walk starts [m]; default anywhere in the largest free part',
+        help='where every chain starts [m]; default anywhere in the free space',
     )
     parser.add_argument(
         '--seed', type=whole, metavar='N', help='seed of the random numbers; default a fresh one'
@@ -75,8 +86,8 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
         '--csv',
         type=output_file,
         metavar='FILE',
-        help='write the points there: a line "x,y", then one line for each; without --csv and '
-        '--plot they are printed',
+        help='write the points there: a line "x,y", or "x,y,chain", then one line for each; '
+        'without --csv and --plot they are printed',
     )
     parser.add_argument(
         '--plot', type=picture, metavar='FILE.png', help='draw map and points, coloured in order'
@@ -86,50 +97,70 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Sample, write the points and the picture, and return the exit code."""
-    from hnr_planner.core import sample
-
     if arguments.csv and arguments.plot and arguments.csv.resolve() == arguments.plot.resolve():
         raise BadInputError(f'--csv and --plot both name {arguments.csv}: choose another name')
     occupancy, space = open_map(arguments)
     keep_map_files(arguments.map, arguments.csv, arguments.plot)
     seed = secrets.randbelow(2**31) if arguments.seed is None else arguments.seed
     compile_kernels()
-    start = arguments.start or uniform_start(arguments.map, space, seed)
-    (points,) = sample(
-        space, start, arguments.n, walk=arguments.walk, thin=arguments.thin, seed=seed
-    )
+    chains = _draw(arguments, space, seed)
 
     if arguments.csv:
         with arguments.csv.open('w', encoding='utf-8', newline='') as file:
-            write_csv(points, file)
+            write_csv(chains, file)
     if arguments.plot:
         from hnr_planner import drawing
 
-        title = f'{arguments.walk}: {arguments.n:,} points, seed {seed}'
-        figure = drawing.figure_of_samples(occupancy, points, title=title, blocked=space.blocked)
+        figure = drawing.figure_of_samples(
+            occupancy,
+            chains.reshape(-1, 2),
+            title=f'{arguments.walk}: {_how_many(arguments)}, seed {seed}',
+            blocked=space.blocked,
+        )
         drawing.save(figure, arguments.plot)
     if not (arguments.csv or arguments.plot):
-        write_csv(points, sys.stdout)
+        write_csv(chains, sys.stdout)
         return 0
     files = ' and '.join(str(file) for file in (arguments.csv, arguments.plot) if file)
-    print(f'{arguments.n:,} points ({arguments.walk}, seed {seed}) in {files}')
+    print(f'{_how_many(arguments)} ({arguments.walk}, seed {seed}) in {files}')
     return 0
 
 
-def uniform_start(name: str, space: GridSpace, seed: int) -> NDArray:
-    """Return a uniform point (2,) of the largest free component: all its cells are equal."""
-    import numpy as np
+def _draw(arguments: argparse.Namespace, space: GridSpace, seed: int) -> NDArray:
+    """Return the chains of points (k, n, 2) that are asked for."""
+    from hnr_planner.core import sample, sample_free_space, SpaceError
 
-    rows, cols = np.nonzero(space.largest_component())
-    if rows.size == 0:
-        raise BadInputError(f'{name}: no free cell is left for the robot')
-    rng = np.random.default_rng((seed, 1))  # not the stream of the walk itself
-    cell = rng.integers(rows.size)
-    in_row, in_col = rng.uniform(-0.5, 0.5, size=2)
-    return space.cell_centres(rows[cell] + in_row, cols[cell] + in_col)
+    settings = {
+        'walk': arguments.walk,
+        'n_chains': arguments.chains,
+        'thin': arguments.thin,
+        'seed': seed,
+    }
+    if arguments.start is not None:
+        return sample(space, arguments.start, arguments.n, **settings)
+    try:
+        return sample_free_space(space, arguments.n, **settings).points
+    except SpaceError as error:
+        raise BadInputError(f'{arguments.map}: nothing to draw from, {error}') from error
 
 
-def write_csv(points: Iterable[NDArray], file: TextIO) -> None:
-    """Write points as a line "x,y" and one line for each, with every digit they have."""
-    file.write('x,y\n')
-    file.writelines(f'{float(x)!r},{float(y)!r}\n' for x, y in points)
+def _how_many(arguments: argparse.Namespace) -> str:
+    """Return how many points are asked for, in words."""
+    chains = f'{arguments.chains:,} chains of ' if arguments.chains > 1 else ''
+    return f'{chains}{arguments.n:,} points'
+
+
+def write_csv(chains: NDArray, file: TextIO) -> None:
+    """Write chains (k, n, 2) as "x,y" and a line for each point, with every digit they have."""
+    if len(chains) == 1:
+        file.write('x,y\n')
+        file.writelines(f'{x!r},{y!r}\n' for x, y in _numbers(chains[0]))
+        return
+    file.write('x,y,chain\n')
+    for k, chain in enumerate(chains):
+        file.writelines(f'{x!r},{y!r},{k}\n' for x, y in _numbers(chain))
+
+
+def _numbers(points: NDArray) -> Iterator[tuple[float, float]]:
+    """Yield points (n, 2) as numbers of Python."""
+    return ((float(x), float(y)) for x, y in points)

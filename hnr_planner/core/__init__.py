@@ -22,6 +22,7 @@ from hnr_planner.core.sampling.diagnostics import (
     total_variation,
     TotalVariation,
 )
+from hnr_planner.core.sampling.free_space import FreeSpaceDraws, sample_free_space
 from hnr_planner.core.sampling.sample import sample, WALKS
 from hnr_planner.core.spaces import (
     BallSpace,
@@ -47,6 +48,7 @@ __all__ = [
     'Diagnosis',
     'DifferenceSpace',
     'FirstSolution',
+    'FreeSpaceDraws',
     'GridSpace',
     'HitAndRun',
     'HnrError',
@@ -64,6 +66,7 @@ __all__ = [
     'plan',
     'relaxation_time',
     'sample',
+    'sample_free_space',
     'simplify',
     'to_arviz',
     'total_variation',

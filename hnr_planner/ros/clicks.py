@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 from geometry_msgs.msg import PoseStamped, PoseWithCovarianceStamped
 from hnr_planner.ros.path_messages import pose_from_message
-from hnr_planner.ros.plan_server import PlanServer
+from hnr_planner.ros.request_server import RequestServer
 from hnr_planner.ros.requests import NOWHERE, Request
 from hnr_planner.ros.settings import Settings
 from rclpy.callback_groups import CallbackGroup
@@ -22,7 +22,7 @@ class Clicks:
     ----------
     node : Node
         Subscribes.
-    server : PlanServer
+    server : RequestServer
         Plans.
     settings : callable
         Returns the parameters in force.
@@ -34,7 +34,7 @@ class Clicks:
     def __init__(
         self,
         node: Node,
-        server: PlanServer,
+        server: RequestServer,
         settings: Callable[[], Settings],
         searches: CallbackGroup,
     ) -> None:
@@ -75,4 +75,4 @@ class Clicks:
             settings.default_tolerance,
             settings.algorithm,
         )
-        self._server.answer(GOAL, request)
+        self._server.plan(GOAL, request)

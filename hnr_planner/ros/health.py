@@ -6,7 +6,7 @@ from diagnostic_msgs.msg import DiagnosticArray
 from hnr_planner.ros.map_input import MapInput
 from hnr_planner.ros.outcome_messages import health_message
 from hnr_planner.ros.outcomes import Refusal
-from hnr_planner.ros.plan_server import PlanServer
+from hnr_planner.ros.request_server import RequestServer
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
 from rclpy.clock import Clock, ClockType
 from rclpy.node import Node
@@ -25,17 +25,17 @@ class Health:
         Whose health it is.
     find_map_input : callable
         Returns where maps come from now, or raises Refusal.
-    plan_server : PlanServer
+    server : RequestServer
         Whose requests are counted.
 
     """
 
     def __init__(
-        self, node: Node, find_map_input: Callable[[], MapInput], plan_server: PlanServer
+        self, node: Node, find_map_input: Callable[[], MapInput], server: RequestServer
     ) -> None:
         self._node = node
         self._find_map_input = find_map_input
-        self._server = plan_server
+        self._server = server
         self._publisher = node.create_publisher(DiagnosticArray, '/diagnostics', 10)
         node.create_timer(
             PERIOD,

@@ -16,7 +16,7 @@ from hnr_planner.ros.answer import NewestMap, ToFrame
 from hnr_planner.ros.nav2_goals import error_of, from_robot_on, request_of, robot_pose
 from hnr_planner.ros.outcomes import Refusal
 from hnr_planner.ros.path_validity import blocked_poses
-from hnr_planner.ros.plan_server import PlanServer
+from hnr_planner.ros.request_server import RequestServer
 from hnr_planner.ros.requests import Report
 from hnr_planner.ros.settings import Settings
 from nav_msgs.msg import Path
@@ -49,7 +49,7 @@ class Nav2Server:
     ----------
     node : Node
         Offers them.
-    server : PlanServer
+    server : RequestServer
         Plans.
     settings : callable
         Returns the parameters in force.
@@ -63,7 +63,7 @@ class Nav2Server:
     def __init__(
         self,
         node: Node,
-        server: PlanServer,
+        server: RequestServer,
         settings: Callable[[], Settings],
         newest_map: NewestMap,
         to_frame: ToFrame,
@@ -127,7 +127,7 @@ class _Action:
         Its name.
     poses_of : callable
         Returns the poses of a goal.
-    server : PlanServer
+    server : RequestServer
         Plans.
     settings : callable
         Returns the parameters in force.
@@ -140,7 +140,7 @@ class _Action:
         kind: Any,
         name: str,
         poses_of: Callable[[Any], Sequence[PoseStamped]],
-        server: PlanServer,
+        server: RequestServer,
         settings: Callable[[], Settings],
     ) -> None:
         self._kind = kind
@@ -185,7 +185,7 @@ class _Action:
         goal = self._goals[_key(handle)]
         handle.publish_feedback(self._kind.Feedback())
         request = request_of(handle.request, self._poses_of(handle.request), self._settings())
-        report, path = self._server.answer(self._name, request, goal.cancel)
+        report, path = self._server.plan(self._name, request, goal.cancel)
         self._server.answer_sent()  # the result leaves when this returns
         with self._one_at_a_time:
             del self._goals[_key(handle)]

@@ -15,7 +15,7 @@ from hnr_planner.ros.nav2_server import HAVE_NAV2, Nav2Server
 from hnr_planner.ros.outcomes import Outcome, Refusal
 from hnr_planner.ros.parameters import Parameters
 from hnr_planner.ros.path_messages import request_from_message
-from hnr_planner.ros.plan_server import PlanServer
+from hnr_planner.ros.request_server import RequestServer
 from hnr_planner.ros.requests import Pose
 from hnr_planner.ros.settings import Settings
 from nav_msgs.srv import GetPlan
@@ -34,7 +34,7 @@ SERVICES = {'plan': None, 'plan_hit_and_run': 'hit_and_run', 'plan_rrt': 'rrt'}
 
 class PlannerNode(ManagedNode):
     """
-    Answers requests for a path on the newest map, and shows how each path was found.
+    Answers requests for paths and for draws on the newest map, and shows every sampled point.
 
     Its services, topics and reports of health are there in every state, so that a caller never
     waits for nothing: until the node is active, requests end as NOT_ACTIVE. Maps are received
@@ -47,7 +47,7 @@ class PlannerNode(ManagedNode):
         self._map_input: MapInput | None = None
         self._frames: Frames | None = None
         self._bond: NodeBond | None = None
-        self._server = PlanServer(
+        self._server = RequestServer(
             self, lambda: self.settings, self._newest_map, self._to_frame_of_map
         )
         self._health = Health(self, self._find_map_input, self._server)
@@ -60,6 +60,13 @@ class PlannerNode(ManagedNode):
                 qos_profile=WAITING_REQUESTS,
                 callback_group=searches,
             )
+        self.create_service(
+            Trigger,
+            '~/sample',
+            self._sample,
+            qos_profile=WAITING_REQUESTS,
+            callback_group=searches,
+        )
         self.create_service(
             Trigger, '~/cancel', self._cancel, callback_group=ReentrantCallbackGroup()
         )
@@ -148,7 +155,16 @@ class PlannerNode(ManagedNode):
     ) -> GetPlan.Response:
         """Answer one request for a path."""
         request = request_from_message(message, algorithm or self.settings.algorithm)
-        response.plan = self._server.answer(service, request).path
+        response.plan = self._server.plan(service, request).path
+        return response
+
+    def _sample(self, _request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
+        """Draw the free space; the answer says how that ended, and how to find the draws."""
+        report, stamp = self._server.sample('sample')
+        response.success = report.outcome.is_success
+        response.message = (
+            f'{report.outcome.name}: {report.why} (stamp {stamp.sec}.{stamp.nanosec:09d})'
+        )
         return response
 
     def _cancel(self, _request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:

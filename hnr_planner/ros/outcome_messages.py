@@ -7,11 +7,17 @@ from builtin_interfaces.msg import Time
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from hnr_planner.ros.outcomes import Outcome
 from hnr_planner.ros.requests import Report
+from hnr_planner.ros.sampling import SampleReport
 from std_msgs.msg import Header
 
 
-def outcome_values(report: Report) -> dict[str, str]:
+def outcome_values(report: Report | SampleReport) -> dict[str, str]:
     """Return everything worth knowing about an answer; seconds and metres, NaN where unknown."""
+    return _of_a_path(report) if isinstance(report, Report) else _of_draws(report)
+
+
+def _of_a_path(report: Report) -> dict[str, str]:
+    """Return the values of a request for a path."""
     values = {
         'why': report.why,
         'algorithm': report.request.algorithm,
@@ -39,9 +45,28 @@ def outcome_values(report: Report) -> dict[str, str]:
     return values
 
 
-def outcome_message(report: Report, name: str, stamp: Time) -> DiagnosticArray:
+def _of_draws(report: SampleReport) -> dict[str, str]:
+    """Return the values of a request for draws."""
+    settings, draws = report.settings, report.draws
+    values = {
+        'why': report.why,
+        'algorithm': settings.sample_walk,
+        'elapsed': f'{report.elapsed:.6f}',
+    }
+    if draws is not None:
+        n_steps = (len(report.points) - report.n_parts) * settings.sample_thin
+        values |= {
+            'seed': str(draws.seed),
+            'iterations': str(n_steps),
+            'samples': str(len(report.points)),
+            'parts': str(report.n_parts),
+        }
+    return values
+
+
+def outcome_message(report: Report | SampleReport, name: str, stamp: Time) -> DiagnosticArray:
     """Return the outcome of one request; `name` says which node and service answered it."""
-    level = DiagnosticStatus.OK if report.solved else DiagnosticStatus.WARN
+    level = DiagnosticStatus.OK if report.outcome.is_success else DiagnosticStatus.WARN
     return _array(level, name, report.outcome.name, outcome_values(report), report.frame, stamp)
 
 

@@ -9,6 +9,7 @@ class Outcome(enum.Enum):
     """How a request ended; those that the planner itself decides bear its status' name."""
 
     SOLVED = enum.auto()
+    SAMPLED = enum.auto()
     NOT_ACTIVE = enum.auto()
     NO_MAP = enum.auto()
     MAP_NOT_READY = enum.auto()
@@ -24,9 +25,14 @@ class Outcome(enum.Enum):
     CANCELLED = enum.auto()
     INTERNAL_ERROR = enum.auto()
 
+    @property
+    def is_success(self) -> bool:
+        """Return whether the caller got what was asked for."""
+        return self in (Outcome.SOLVED, Outcome.SAMPLED)
+
 
 class Refusal(HnrError):
-    """A request ends before anything is planned: the outcome's name, and why in words."""
+    """A request ends before its end: the outcome's name, and why in words."""
 
     def __init__(self, outcome: Outcome, why: str) -> None:
         super().__init__(why)

@@ -11,7 +11,8 @@ from hnr_planner.ros.marker_messages import serialised_markers
 from hnr_planner.ros.outcome_messages import outcome_message
 from hnr_planner.ros.path_messages import serialised_path
 from hnr_planner.ros.requests import Report, Request
-from hnr_planner.ros.sample_messages import samples_message
+from hnr_planner.ros.sample_messages import draws_message, samples_message
+from hnr_planner.ros.sampling import SampleReport
 from nav_msgs.msg import Path
 import numpy as np
 from numpy.typing import NDArray
@@ -51,25 +52,45 @@ class Result:
     ----------
     caller : str
         Service, action or topic that the request came by.
+    report : Report or SampleReport
+        How it ended.
+    header : Header
+        Header of all messages; the stamp is still to be set.
+
+    """
+
+    caller: str
+    report: Report | SampleReport
+    header: Header
+
+
+@dataclass(frozen=True, eq=False)
+class PathResult(Result):
+    """
+    What is to be told about a request for a path.
+
+    Parameters
+    ----------
     request : Request
         What was asked for, as it arrived.
-    report : Report
-        How it ended.
     poses : (n, 7)
         Its path, as `pose_rows` gives it.
-    header : Header
-        Header of its path; the stamp is still to be set.
     samples_max : int
         Most samples to show.
 
     """
 
-    caller: str
-    request: Request
     report: Report
+    request: Request
     poses: NDArray[np.float64]
-    header: Header
     samples_max: int
+
+
+@dataclass(frozen=True, eq=False)
+class DrawsResult(Result):
+    """What is to be told about a request for draws."""
+
+    report: SampleReport
 
 
 class Publications:
@@ -137,32 +158,35 @@ class Publications:
         result, sent = self._waiting.popleft()
         sent.wait(LONGEST_HOLD)
         try:
-            self._log(result.caller, result.request, result.report)
+            self._log(result)
             self._publish(result)
         except Exception as error:  # must not stop those that follow
             self._logger.error(f'could not tell about a result: {error!r}')
 
-    def _log(self, caller: str, request: Request, report: Report) -> None:
+    def _log(self, result: Result) -> None:
         """Say in one line how a request ended."""
-        if request.omits_start:
+        caller, report = result.caller, result.report
+        if isinstance(result, PathResult) and result.request.omits_start:
             self._logger.info(
                 f'{caller}: the start is (0, 0) in no frame, as if left out: taken literally'
             )
         text = f'{caller}: {report.outcome.name} after {report.elapsed:.3f} s: {report.why}'
-        if report.solved:
+        if report.outcome.is_success:
             self._logger.info(text)
         else:
             self._logger.warning(text)
 
     def _publish(self, result: Result) -> None:
-        report, header = result.report, result.header
-        name = f'{self._name}/{result.caller}'
-        self._outcome.publish(outcome_message(report, name, header.stamp))
-        self._path.publish(serialised_path(result.poses, header))
-        if self._pictures and len(self._waiting) <= LONGEST_BACKLOG:
-            cloud = samples_message(report.result, result.samples_max, header)
-            self._samples.publish(cloud)
-            self._markers.publish(serialised_markers(report, header))
+        header, name = result.header, f'{self._name}/{result.caller}'
+        self._outcome.publish(outcome_message(result.report, name, header.stamp))
+        if isinstance(result, DrawsResult):
+            self._samples.publish(draws_message(result.report, header))
+        elif isinstance(result, PathResult):
+            self._path.publish(serialised_path(result.poses, header))
+            if self._pictures and len(self._waiting) <= LONGEST_BACKLOG:
+                samples = result.report.result
+                self._samples.publish(samples_message(samples, result.samples_max, header))
+                self._markers.publish(serialised_markers(result.report, header))
 
 
 class _Answering(threading.local):

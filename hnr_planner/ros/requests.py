@@ -116,6 +116,11 @@ class Report:
         return self.outcome is Outcome.SOLVED
 
     @property
+    def searched(self) -> bool:
+        """Return whether there was anything to search for, solved or not."""
+        return self.result is not None and len(self.result.samples) > 0
+
+    @property
     def path(self) -> NDArray[np.float64]:
         """Return the vertices of the path, an array (m, 2); none unless solved."""
         if self.solved and self.result is not None:

@@ -1,10 +1,12 @@
-"""`sensor_msgs/PointCloud2` from the samples of a search."""
+"""`sensor_msgs/PointCloud2` from the samples of a search, or from draws of the free space."""
 
 import array
 
 from hnr_planner.core import PlanResult
 from hnr_planner.ros.sample_cap import shown_samples
+from hnr_planner.ros.sampling import SampleReport
 import numpy as np
+from numpy.typing import NDArray
 from sensor_msgs.msg import PointCloud2, PointField
 from std_msgs.msg import Header
 
@@ -25,7 +27,23 @@ def samples_message(result: PlanResult | None, limit: int, header: Header) -> Po
 
     A root has parent -1. Without a result the cloud is empty.
     """
-    points = np.zeros(0, dtype=LAYOUT) if result is None else _points(result, limit)
+    if result is None:
+        return _cloud(np.empty((0, 2)), np.empty(0), header)
+    shown = shown_samples(result.parents, limit)
+    return _cloud(result.samples[shown.rows], shown.parents, header)
+
+
+def draws_message(report: SampleReport, header: Header) -> PointCloud2:
+    """Return all draws; `parent` is the `index` of the one that a draw is a step away from."""
+    return _cloud(report.points, report.parents, header)
+
+
+def _cloud(samples: NDArray, parents: NDArray, header: Header) -> PointCloud2:
+    """Return samples (n, 2) with their parents (n,)."""
+    points = np.zeros(len(samples), dtype=LAYOUT)
+    points['x'], points['y'] = samples.T
+    points['index'] = np.arange(len(points))
+    points['parent'] = parents
     message = PointCloud2(
         header=header,
         height=1,
@@ -41,13 +59,3 @@ def samples_message(result: PlanResult | None, limit: int, header: Header) -> Po
     )
     message.data = array.array('B', points.tobytes())
     return message
-
-
-def _points(result: PlanResult, limit: int) -> np.ndarray:
-    """Return the shown samples in the layout of the message."""
-    shown = shown_samples(result.parents, limit)
-    points = np.zeros(len(shown.rows), dtype=LAYOUT)
-    points['x'], points['y'] = result.samples[shown.rows].T
-    points['index'] = np.arange(len(points))
-    points['parent'] = shown.parents
-    return points

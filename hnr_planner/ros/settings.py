@@ -9,7 +9,7 @@ import dataclasses
 from dataclasses import dataclass
 from typing import Any
 
-from hnr_planner.core import ALGORITHMS, HnrError
+from hnr_planner.core import ALGORITHMS, HnrError, WALKS
 
 LARGEST_INT = 2**31 - 1
 
@@ -136,7 +136,22 @@ class Settings:
         upper=1000.0,
     )
     samples_max: int = _setting(
-        100_000, 'Most samples in ~/samples for one request.', lower=0, upper=10_000_000
+        100_000, 'Most samples of one search in ~/samples.', lower=0, upper=10_000_000
+    )
+    sample_count: int = _setting(
+        1000,
+        'Draws of the free space for one request to ~/sample; seed and time_limit hold for them, '
+        'too.',
+        lower=1,
+        upper=1_000_000,
+    )
+    sample_walk: str = _setting('hit_and_run', 'Random walk of ~/sample.', choices=WALKS)
+    sample_thin: int = _setting(
+        1,
+        'Steps of the walk from one draw of ~/sample to the next: with more, draws depend less on '
+        'each other.',
+        lower=1,
+        upper=100_000,
     )
     rviz_clicks: bool = _setting(
         False, 'Listen to the click tools of RViz: initialpose keeps the start, goal_pose plans.'
@@ -181,6 +196,16 @@ class Settings:
             'seed': None if self.seed < 0 else self.seed,
             'simplify': self.simplify,
             'optimize_for': self.optimize_for,
+        }
+
+    @property
+    def sample_arguments(self) -> dict[str, Any]:
+        """Return what `sample_free_space` takes from the settings."""
+        return {
+            'n_draws': self.sample_count,
+            'walk': self.sample_walk,
+            'thin': self.sample_thin,
+            'seed': None if self.seed < 0 else self.seed,
         }
 
 

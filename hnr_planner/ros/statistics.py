@@ -6,6 +6,7 @@ import threading
 
 from hnr_planner.ros.outcomes import Outcome
 from hnr_planner.ros.requests import Report
+from hnr_planner.ros.sampling import SampleReport
 import numpy as np
 
 REMEMBERED_TIMES = 1000
@@ -33,11 +34,11 @@ class Statistics:
         self._times: deque[float] = deque(maxlen=REMEMBERED_TIMES)
         self._lock = threading.Lock()
 
-    def count(self, report: Report) -> None:
+    def count(self, report: Report | SampleReport) -> None:
         """Add one report."""
         with self._lock:
             self._outcomes[report.outcome] += 1
-            if report.result is not None and len(report.result.samples) > 0:
+            if isinstance(report, Report) and report.searched:
                 self._times.append(report.elapsed)
 
     def summary(self) -> Summary:

@@ -1,6 +1,5 @@
 """The command ``sample``."""
 
-from argparse import Namespace
 from collections.abc import Callable
 import csv
 from pathlib import Path
@@ -10,13 +9,10 @@ from test.brute_force import path_collisions
 from test.cli.conftest import at, Ran, ROOT, run_process
 from test.cli.pictures import check_picture
 
-from hnr_planner.cli.arguments import open_map
-from hnr_planner.cli.sample import uniform_start
 from hnr_planner.core import WALKS
 from hnr_planner.maps import OccupancyMap
 import numpy as np
 import pytest
-from scipy.stats import chi2
 
 Run = Callable[..., Ran]
 
@@ -48,13 +44,25 @@ def test_every_row_is_a_free_point(
         )
 
 
-def test_points_lie_in_the_largest_part(run: Run, rooms: OccupancyMap, rooms_file: Path) -> None:
+def test_points_lie_in_every_part(run: Run, rooms: OccupancyMap, rooms_file: Path) -> None:
     x, y, yaw = rooms.origin
     points = read(run('sample', rooms_file, '--n', 2000, '--seed', 1).out) - (x, y)
     cols = (points[:, 0] * np.cos(yaw) + points[:, 1] * np.sin(yaw)) / rooms.resolution
     rows = (points[:, 1] * np.cos(yaw) - points[:, 0] * np.sin(yaw)) / rooms.resolution
-    assert not ((cols > 70) & (rows > 30)).any()  # the closed cupboard
     assert (cols < 39).any() and (cols > 41).any()  # both rooms
+    # The closed cupboard has 64 of 2891 free cells: 44 points are expected, and 7 their deviation.
+    assert 10 <= ((cols > 70) & (rows > 30)).sum() <= 80
+
+
+def test_chains_are_told_apart_and_each_is_the_one_of_fewer(run: Run, rooms_file: Path) -> None:
+    for start in ([], ['--start', -2.0, 3.0]):
+        command = ['sample', rooms_file, '--n', 40, '--seed', 2, *start]
+        header, *rows = csv.reader(run(*command, '--chains', 3).out.splitlines())
+        assert header == ['x', 'y', 'chain']
+        assert [row[2] for row in rows] == ['0'] * 40 + ['1'] * 40 + ['2'] * 40
+        points = np.array([row[:2] for row in rows], dtype=float)
+        np.testing.assert_array_equal(points[:40], read(run(*command).out))
+        assert len(np.unique(points, axis=0)) == 120
 
 
 def test_start_chooses_the_part(run: Run, rooms: OccupancyMap, rooms_file: Path) -> None:
@@ -64,7 +72,7 @@ def test_start_chooses_the_part(run: Run, rooms: OccupancyMap, rooms_file: Path)
 
 
 def test_thin_keeps_every_third_point_of_the_walk(run: Run, rooms_file: Path) -> None:
-    command = ['sample', rooms_file, '--seed', 3]
+    command = ['sample', rooms_file, '--seed', 3, '--start', -2.0, 3.0]
     every = read(run(*command, '--n', 60).out)
     np.testing.assert_array_equal(read(run(*command, '--n', 20, '--thin', 3).out), every[2::3])
 
@@ -108,23 +116,3 @@ def test_a_reader_that_leaves_is_no_error(rooms_file: Path) -> None:
     )
     assert (done.returncode, done.stderr) == (0, '')
     assert len(done.stdout.splitlines()) == 2
-
-
-def test_walk_starts_anywhere_with_the_same_chance(rooms_file: Path) -> None:
-    # 5,000 starts over 8 x 4 bins of the free space; a false alarm in 1 of 10^6 runs.
-    _, space = open_map(Namespace(map=rooms_file, robot_radius=0.0, unknown='blocked'))
-    starts = np.array([uniform_start('map', space, seed) for seed in range(5000)])
-    x, y, yaw = space.origin
-    away = starts - (x, y)
-    cols = (away[:, 0] * np.cos(yaw) + away[:, 1] * np.sin(yaw)) / space.resolution
-    rows = (away[:, 1] * np.cos(yaw) - away[:, 0] * np.sin(yaw)) / space.resolution
-    found = np.histogram2d(rows, cols, bins=(4, 8), range=((0, 40), (0, 80)))[0]
-    cells = space.largest_component().reshape(4, 10, 8, 10).sum(axis=(1, 3))
-    expected = cells / cells.sum() * len(starts)
-    assert found[expected == 0].sum() == 0
-    used = expected > 0
-    statistic = ((found[used] - expected[used]) ** 2 / expected[used]).sum()
-    assert statistic < chi2.isf(1e-6, used.sum() - 1)
-    # And within its cell: the middle alone would be 0.5.
-    inside = np.concatenate([rows % 1, cols % 1])
-    assert np.histogram(inside, bins=10, range=(0, 1))[0].min() > 800

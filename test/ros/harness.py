@@ -193,6 +193,10 @@ def yaws_of(path: PathMessage) -> np.ndarray:
     )
 
 
+Answer = PathMessage | Trigger.Response
+"""What a request was answered with: a path, or that there are draws."""
+
+
 class Client:
     """Talks to the nodes of one namespace, and keeps everything that they publish."""
 
@@ -256,14 +260,23 @@ class Client:
         """Ask for a path and return it."""
         return result_of(self.send_plan(*arguments, **keywords)).plan
 
-    def outcome_of(self, path: PathMessage) -> tuple[Outcome, dict[str, str]]:
-        """Return the outcome with the stamp of an answer."""
-        return read_outcome(self.stamped(self.outcomes, path))
+    def send_sample(self) -> Any:
+        """Ask for draws of the free space and return the future of the answer."""
+        return self.send(Trigger, f'{self._planner}/sample', Trigger.Request())
 
-    def stamped(self, received: list, path: PathMessage) -> Any:
+    def sample(self) -> Trigger.Response:
+        """Ask for draws of the free space and return the answer."""
+        return result_of(self.send_sample())
+
+    def outcome_of(self, answer: Answer) -> tuple[Outcome, dict[str, str]]:
+        """Return the outcome with the stamp of an answer."""
+        return read_outcome(self.stamped(self.outcomes, answer))
+
+    def stamped(self, received: list, answer: Answer) -> Any:
         """Return the one message with the stamp of an answer."""
+        stamp = stamp_of(answer)
         return until(
-            lambda: next((m for m in list(received) if stamp_of(m) == stamp_of(path)), None),
+            lambda: next((m for m in list(received) if stamp_of(m) == stamp), None),
             'a message with the stamp of the answer',
         )
 
@@ -307,7 +320,10 @@ class Client:
 
 
 def stamp_of(message: Any) -> tuple[int, int]:
-    """Return the stamp of a message; that of markers is in each of them."""
+    """Return the stamp of a message; markers have it in each, draws in the words of the answer."""
+    if isinstance(message, Trigger.Response):
+        sec, nanosec = message.message.rpartition('(stamp ')[2].removesuffix(')').split('.')
+        return int(sec), int(nanosec)
     header = message.markers[0].header if isinstance(message, MarkerArray) else message.header
     return header.stamp.sec, header.stamp.nanosec
 

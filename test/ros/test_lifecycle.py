@@ -82,6 +82,15 @@ def outcome(client: Client) -> Outcome:
     return client.outcome_of(client.plan(START, GOAL))[0]
 
 
+def outcome_of_both(client: Client) -> Outcome:
+    """Ask for a path and for draws, which end alike, and return how."""
+    ended, answer = outcome(client), client.sample()
+    sampled = client.outcome_of(answer)[0]
+    assert answer.success == sampled.is_success == ended.is_success
+    assert sampled.is_success or sampled is ended
+    return ended
+
+
 def health(client: Client) -> str:
     """Return what the node says of itself from now on."""
     heard = client.listen(DiagnosticArray, '/diagnostics', MANY)
@@ -101,36 +110,36 @@ def test_every_state_answers_at_once_and_only_the_active_one_plans(
 ) -> None:
     client.publish_map(grid_message(two_rooms()))
     assert state(client) == UNCONFIGURED
-    assert outcome(client) is Outcome.NOT_ACTIVE
+    assert outcome_of_both(client) is Outcome.NOT_ACTIVE
     assert health(client).startswith('NOT_ACTIVE')
 
     assert change(client, CONFIGURE) == [True]
     assert state(client) == INACTIVE
     planner.wait_for('map received')
-    assert outcome(client) is Outcome.NOT_ACTIVE
+    assert outcome_of_both(client) is Outcome.NOT_ACTIVE
 
     assert change(client, ACTIVATE) == [True]
     assert state(client) == ACTIVE
-    assert outcome(client) is Outcome.SOLVED
+    assert outcome_of_both(client) is Outcome.SOLVED
     assert health(client) == 'ready'
 
     assert change(client, DEACTIVATE) == [True]
-    assert outcome(client) is Outcome.NOT_ACTIVE
+    assert outcome_of_both(client) is Outcome.NOT_ACTIVE
     assert change(client, ACTIVATE) == [True]
-    assert outcome(client) is Outcome.SOLVED, 'the map was kept'
+    assert outcome_of_both(client) is Outcome.SOLVED, 'the map was kept'
 
     assert change(client, DEACTIVATE, CLEANUP) == [True, True]
     assert state(client) == UNCONFIGURED
-    assert outcome(client) is Outcome.NOT_ACTIVE
+    assert outcome_of_both(client) is Outcome.NOT_ACTIVE
 
     received = planner.log.count('map received')
     assert change(client, CONFIGURE, ACTIVATE) == [True, True]
     until(lambda: planner.log.count('map received') > received, 'the latched map again')
-    assert outcome(client) is Outcome.SOLVED
+    assert outcome_of_both(client) is Outcome.SOLVED
 
     assert change(client, SHUTDOWN[ACTIVE]) == [True]
     assert state(client) == FINALIZED
-    assert outcome(client) is Outcome.NOT_ACTIVE
+    assert outcome_of_both(client) is Outcome.NOT_ACTIVE
     assert planner.end(signal.SIGTERM) == 0
     assert 'Traceback' not in planner.log
 
@@ -153,16 +162,18 @@ def test_transition_that_the_state_does_not_allow_is_refused_and_changes_nothing
 
 def test_deactivation_ends_searches(client: Client, planner: NodeProcess) -> None:
     change(client, CONFIGURE, ACTIVATE)
-    client.set_parameters(time_limit=60.0)
+    client.set_parameters(time_limit=60.0, sample_count=1_000_000, sample_thin=100_000)
     client.publish_map(grid_message(maze()))
     planner.wait_for('map received')
     futures = [client.send_plan(pose(0.025, 0.025), pose(20, 20)) for _ in range(3)]
-    client.wait_for_running(len(futures))
+    sampling = client.send_sample()
+    client.wait_for_running(len(futures) + 1)
     assert change(client, DEACTIVATE) == [True]
     for future in futures:
         path = result_of(future).plan
         assert path.poses == []
         assert client.outcome_of(path)[0] is Outcome.CANCELLED
+    assert client.outcome_of(result_of(sampling))[0] is Outcome.CANCELLED
     assert outcome(client) is Outcome.NOT_ACTIVE
 
 

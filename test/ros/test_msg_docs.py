@@ -196,7 +196,7 @@ def test_service_examples_work(client: Client) -> None:
             assert answer.map.info.width > 100
         else:
             assert answer.success
-    assert called == {'/map_source/map', '/hnr_planner/cancel'} | {
+    assert called == {'/map_source/map', '/hnr_planner/cancel', '/hnr_planner/sample'} | {
         f'/hnr_planner/plan{suffix}' for suffix in ('', '_rrt', '_hit_and_run')
     }
 

@@ -51,6 +51,9 @@ def test_configuration_states_units_and_ranges() -> None:
         ('seed', 2**31, '-1..2147483647'),
         ('pose_spacing', -0.5, 'vertices only'),
         ('samples_max', -1, '0..10000000'),
+        ('sample_count', 0, '1..1000000'),
+        ('sample_walk', 'drunk', 'hit_and_run'),
+        ('sample_thin', 0, '1..100000'),
     ],
 )
 def test_impossible_value_is_refused_with_value_and_rule(
@@ -65,6 +68,7 @@ def test_impossible_value_is_refused_with_value_and_rule(
 
 def test_no_seed_and_no_limit_reach_the_planner_as_none() -> None:
     assert Settings().plan_arguments['seed'] is None
+    assert Settings().sample_arguments['seed'] is None
     assert Settings().plan_arguments['max_iterations'] is None
     chosen = Settings(seed=0, max_iterations=5).plan_arguments
     assert (chosen['seed'], chosen['max_iterations']) == (0, 5)

@@ -3,21 +3,14 @@
 from dataclasses import dataclass, field
 import math
 import time
-from typing import Protocol
 
+from hnr_planner.core.cancellation import Event
 from hnr_planner.core.planning.result import PlannerStatus
 from hnr_planner.core.planning.search import Search
 
 #: Transitions in the first batch; later ones last about as long as the bounds below [s].
 FIRST_BATCH = 64
 BATCH_TIME = (0.25e-3, 0.5e-3)
-
-
-class Event(Protocol):
-    """Something that can be set from another thread, as ``threading.Event``."""
-
-    def is_set(self) -> bool:
-        """Say whether it was set."""
 
 
 @dataclass

@@ -10,6 +10,7 @@ import math
 import time
 from typing import Any
 
+from hnr_planner.core.cancellation import Event
 from hnr_planner.core.checks import check_count, check_number
 from hnr_planner.core.lengths import path_length
 from hnr_planner.core.planning.alternatives import (
@@ -18,7 +19,7 @@ from hnr_planner.core.planning.alternatives import (
     with_alternatives,
 )
 from hnr_planner.core.planning.attempts import Attempt, attempt, improve, with_clearance
-from hnr_planner.core.planning.limits import Event, Limits
+from hnr_planner.core.planning.limits import Limits
 from hnr_planner.core.planning.request import check_request, Request, without_search
 from hnr_planner.core.planning.result import (
     FirstSolution,

@@ -6,8 +6,8 @@ it was looks around with the same random numbers as before: what leads to the sa
 has met no change, and there is nothing to learn from it.
 """
 
+from hnr_planner.core.cancellation import Event, in_parts
 from hnr_planner.core.checks import Floats
-from hnr_planner.core.planning.limits import Event
 from hnr_planner.core.planning.roadmap.corners import (
     distinct,
     find_corners,
@@ -17,7 +17,6 @@ from hnr_planner.core.planning.roadmap.corners import (
 from hnr_planner.core.planning.roadmap.draws import place_draws
 from hnr_planner.core.planning.roadmap.exits import arrive, exits_of
 from hnr_planner.core.planning.roadmap.knowledge import Knowledge, LOOKS
-from hnr_planner.core.planning.roadmap.parts import in_parts
 from hnr_planner.core.planning.roadmap.sights import (
     ASK,
     ask_through,

@@ -12,11 +12,11 @@ import math
 from typing import ClassVar
 
 from hnr_planner.core.borrowed import borrowed
+from hnr_planner.core.cancellation import Event
 from hnr_planner.core.checks import check_seed, Floats
 from hnr_planner.core.errors import RequestError
 from hnr_planner.core.kernels import kernel
 from hnr_planner.core.planning.hit_and_run_connect import HitAndRunConnect
-from hnr_planner.core.planning.limits import Event
 from hnr_planner.core.planning.roadmap.exits import nodes_seen, way_to_node
 from hnr_planner.core.planning.roadmap.knowledge import Knowledge, nothing_known
 from hnr_planner.core.planning.roadmap.learning import learn, N_DRAWS

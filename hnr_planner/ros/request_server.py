@@ -1,22 +1,26 @@
-"""The way of a request through the node, whoever sends it: gate, plan, count, tell, publish."""
+"""The way of a request through the node, whoever sends it: gate, work, count, tell, publish."""
 
 from collections.abc import Callable
 import threading
 import traceback
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
+from builtin_interfaces.msg import Time
 from hnr_planner.ros.answer import answer, NewestMap, ToFrame
 from hnr_planner.ros.outcomes import Outcome, Refusal
 from hnr_planner.ros.path_messages import path_message, pose_rows
 from hnr_planner.ros.path_watch import PathWatch
-from hnr_planner.ros.publications import Publications, Result
+from hnr_planner.ros.publications import DrawsResult, PathResult, Publications
 from hnr_planner.ros.requests import Report, Request
+from hnr_planner.ros.sampling import draw, SampleReport
 from hnr_planner.ros.searches import RunningSearches
 from hnr_planner.ros.settings import Settings
 from hnr_planner.ros.statistics import Statistics
 from nav_msgs.msg import Path
 from rclpy.node import Node
 from std_msgs.msg import Header
+
+Some = TypeVar('Some', Report, SampleReport)
 
 
 class Answer(NamedTuple):
@@ -26,9 +30,16 @@ class Answer(NamedTuple):
     path: Path
 
 
-class PlanServer:
+class Drawn(NamedTuple):
+    """What came of a request for draws, and the stamp of all that is published about it."""
+
+    report: SampleReport
+    stamp: Time
+
+
+class RequestServer:
     """
-    Answers requests for a path; any number of threads may ask at once.
+    Answers requests for paths and for draws; any number of threads may ask at once.
 
     Parameters
     ----------
@@ -60,9 +71,7 @@ class PlanServer:
         self.searches = RunningSearches()
         self.statistics = Statistics()
 
-    def answer(
-        self, caller: str, request: Request, cancel: threading.Event | None = None
-    ) -> Answer:
+    def plan(self, caller: str, request: Request, cancel: threading.Event | None = None) -> Answer:
         """
         Return the answer to `request`; all about it is published soon.
 
@@ -76,16 +85,31 @@ class PlanServer:
             Ends this search when it is set.
 
         """
-        settings = self._settings()
-        report = self._report(request, settings, cancel or threading.Event())
-        self.statistics.count(report)
+        settings, cancel = self._settings(), cancel or threading.Event()
+        report = self._counted(
+            cancel,
+            lambda: answer(request, settings, self._newest_map, cancel, self._to_frame),
+            lambda refusal: Report(refusal.outcome, refusal.why, request, elapsed=0.0),
+        )
         poses, header = pose_rows(report, settings.pose_spacing), Header(frame_id=report.frame)
         path = path_message(poses, header)
-        result = Result(caller, request, report, poses, header, settings.samples_max)
+        result = PathResult(caller, report, header, request, poses, settings.samples_max)
         with self._in_order:
             self._publications.hand_over(result)
             self.watch.follow(report)
         return Answer(report, path)
+
+    def sample(self, caller: str) -> Drawn:
+        """Return the answer to a request for draws, which came by `caller`; likewise."""
+        settings, cancel = self._settings(), threading.Event()
+        report = self._counted(
+            cancel,
+            lambda: draw(settings, self._newest_map, cancel),
+            lambda refusal: SampleReport(refusal.outcome, refusal.why, settings),
+        )
+        header = Header(frame_id=report.frame)
+        self._publications.hand_over(DrawsResult(caller, report, header))
+        return Drawn(report, header.stamp)
 
     def answer_sent(self) -> None:
         """Say that the answer that this thread got last is on its way to whoever asked."""
@@ -100,14 +124,21 @@ class PlanServer:
         """Publish the last results."""
         self._publications.close()
 
-    def _report(self, request: Request, settings: Settings, cancel: threading.Event) -> Report:
-        """Return the answer to `request`, even if the planner has a defect."""
+    def _counted(
+        self,
+        cancel: threading.Event,
+        work: Callable[[], Some],
+        refused: Callable[[Refusal], Some],
+    ) -> Some:
+        """Return the report of `work`, or one about why there is none, even for a defect in it."""
         try:
             with self.searches.one(cancel):
-                return answer(request, settings, self._newest_map, cancel, self._to_frame)
+                report = work()
         except Refusal as refusal:
-            return Report(refusal.outcome, refusal.why, request, elapsed=0.0)
+            report = refused(refusal)
         except Exception as error:  # without an answer the caller would wait for ever
             self._node.get_logger().error(f'a defect of the planner:\n{traceback.format_exc()}')
             why = f'a defect of the planner, please report it: {error!r}'
-            return Report(Outcome.INTERNAL_ERROR, why, request, elapsed=0.0)
+            report = refused(Refusal(Outcome.INTERNAL_ERROR, why))
+        self.statistics.count(report)
+        return report

@@ -1,0 +1,24 @@
+"""Long work in parts, between which a cancellation is looked at."""
+
+from collections.abc import Iterator
+from typing import Protocol
+
+from hnr_planner.core.errors import Cancelled
+
+#: Rows that are handled between two looks at a cancellation.
+ROWS = 64
+
+
+class Event(Protocol):
+    """Something that can be set from another thread, as ``threading.Event``."""
+
+    def is_set(self) -> bool:
+        """Say whether it was set."""
+
+
+def in_parts(n_rows: int, cancel: Event | None, rows: int = ROWS) -> Iterator[slice]:
+    """Yield slices of so many rows; before each, raise Cancelled if ``cancel`` was set."""
+    for first in range(0, n_rows, rows):
+        if cancel is not None and cancel.is_set():
+            raise Cancelled('the work was cancelled before it was done')
+        yield slice(first, min(first + rows, n_rows))
