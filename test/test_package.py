@@ -36,6 +36,7 @@ ROOMS = (
     'hnr_planner.core.spaces',
     'hnr_planner.core.systems',
     'hnr_planner.core.sampling',
+    'hnr_planner.core.theory',
     'hnr_planner.core.planning',
     'hnr_planner.core',
     'hnr_planner.maps',

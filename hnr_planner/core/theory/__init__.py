@@ -1,0 +1,100 @@
+"""
+The quantities of the paper, computed: where a step goes, how sets are shaped, how fast walks mix.
+
+Source: Abbasi-Yadkori, Bartlett, Gabillon and Malek, "Hit-and-Run for Sampling and Planning in
+Non-Convex Spaces" (2016). Its lemmas and equations are counted as in the arXiv text: Lemma 8 to 10
+on cross-ratios, 11 on views, 12 on total variation, 13 on conductance, Theorem 5 on mixing.
+``docs/theory.md`` says what each quantity gives on example sets, and what is wrong in the paper.
+
+>>> disc = BallSpace((0, 0), 1)
+>>> cross_ratio_distance(disc, (-0.5, 0), (0.5, 0))
+array([8.])
+"""
+
+from hnr_planner.core.theory.boundary_ratio import ball_boundary_ratio, boundary_ratio
+from hnr_planner.core.theory.bounds import (
+    BallImage,
+    corrected_conductance,
+    lipschitz_factor,
+    mended_conductance,
+    mended_view_bound,
+    mixing_bound,
+    printed_conductance,
+    ratio_inequality,
+    variation_bound,
+    view_bound,
+)
+from hnr_planner.core.theory.chain_distance import Bounds, chain_distance, even_chain_distance
+from hnr_planner.core.theory.conductance import (
+    best_cut,
+    cell_flow,
+    CellFlow,
+    Cut,
+    cut_conductance,
+    Estimate,
+    relaxation_time,
+)
+from hnr_planner.core.theory.cross_ratio import cross_ratio_distance, hilbert_distance
+from hnr_planner.core.theory.curvature import Curvature, curve_curvature, slice_curvature
+from hnr_planner.core.theory.density import log_ball_volume, transition_density
+from hnr_planner.core.theory.links import annulus_sector_links, link_diameter, LinkBounds
+from hnr_planner.core.theory.path_length import (
+    expected_transitions,
+    mixing_estimate,
+    mixing_time,
+    transitions_bound,
+)
+from hnr_planner.core.theory.step import (
+    step_length,
+    step_mean,
+    step_overlap,
+    step_probability,
+    unseen_probability,
+)
+from hnr_planner.core.theory.view import polygon_area, view
+
+__all__ = [
+    'BallImage',
+    'Bounds',
+    'CellFlow',
+    'Curvature',
+    'Cut',
+    'Estimate',
+    'LinkBounds',
+    'annulus_sector_links',
+    'ball_boundary_ratio',
+    'best_cut',
+    'boundary_ratio',
+    'cell_flow',
+    'chain_distance',
+    'corrected_conductance',
+    'cross_ratio_distance',
+    'curve_curvature',
+    'cut_conductance',
+    'even_chain_distance',
+    'expected_transitions',
+    'hilbert_distance',
+    'link_diameter',
+    'lipschitz_factor',
+    'log_ball_volume',
+    'mended_conductance',
+    'mended_view_bound',
+    'mixing_bound',
+    'mixing_estimate',
+    'mixing_time',
+    'polygon_area',
+    'printed_conductance',
+    'ratio_inequality',
+    'relaxation_time',
+    'slice_curvature',
+    'step_length',
+    'step_mean',
+    'step_overlap',
+    'step_probability',
+    'transition_density',
+    'transitions_bound',
+    'unseen_probability',
+    'variation_bound',
+    'view',
+    'view_bound',
+]

@@ -1,0 +1,186 @@
+"""
+The distance by way of others: d-tilde of the paper (Definition 2), between bounds.
+
+d-tilde is the least sum of cross-ratio distances over chains u, z_1, ..., v of ``n_links``
+segments in the set (tau of them, for a tau-best set). On a chord the parts sum up to less than
+the whole, so more links always give less, also between points that see each other, and in the
+limit a path costs Hilbert's length: the integral of ds (1/|x - a| + 1/|x - b|) over it, where a
+and b end the chord along it. A segment costs log(1 + d) then.
+
+With k links of total Hilbert length H the sum of the k distances is at least k (exp(H / k) - 1),
+as exp is convex; equal parts reach it. In a convex set no detour is shorter, and d-tilde is
+exactly k ((1 + d)^(1/k) - 1).
+"""
+
+import math
+from typing import NamedTuple
+
+from hnr_planner.core.checks import check_count, check_point, Floats
+from hnr_planner.core.errors import RequestError
+from hnr_planner.core.spaces import BallSpace, BoxSpace, PolytopeSpace, Space
+from hnr_planner.core.theory.corners import corners
+from hnr_planner.core.theory.cross_ratio import cross_ratio_distance, hilbert_distance
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.optimize import minimize
+from scipy.sparse.csgraph import dijkstra
+from scipy.spatial import ConvexHull
+
+#: Points of the set that a chain may pass, on a lattice or random, before it is improved.
+N_POINTS = 400
+
+
+class Bounds(NamedTuple):
+    """A number between two others."""
+
+    lower: float
+    upper: float
+
+
+def even_chain_distance(ratio: float, n_links: float = math.inf) -> float:
+    """
+    Return the sum of cross-ratio distances that even parts of one segment have.
+
+    It is d-tilde in convex sets, and a bound from above for points that see each other elsewhere.
+
+    Parameters
+    ----------
+    ratio : float
+        Cross-ratio distance of the ends.
+    n_links : float
+        Number of parts; infinite for the limit log(1 + d).
+
+    """
+    return _total(math.log1p(ratio), n_links)
+
+
+def chain_distance(
+    space: Space, u: ArrayLike, v: ArrayLike, n_links: float = math.inf, *, seed: int = 0
+) -> Bounds:
+    """
+    Bounds on d-tilde of two points of a set in the plane.
+
+    From above: the best chain over points of the set, improved in continuous space. From below:
+    every segment costs at least 4 |u - v| / D, and at least what it costs in the convex hull.
+
+    Parameters
+    ----------
+    space : Space
+        The set.
+    u, v : (2,)
+        Free points.
+    n_links : float
+        How many segments a chain has; infinite for the limit.
+    seed : int
+        Of the points that chains may pass at first.
+
+    """
+    if space.dim != 2:
+        raise RequestError(f'chains are for the plane, the space has {space.dim} axes')
+    if n_links != math.inf:
+        check_count('n_links', n_links, 1)
+    u, v = check_point('u', u, 2), check_point('v', v, 2)
+    nodes = np.concatenate([[u, v], corners(space).turns, _scattered(space, seed)])
+    hull = hull_of(space)
+    in_hull = float(hilbert_distance(cross_ratio_distance(hull, u, v))[0])
+    by_length = 4.0 * _shortest_length(space, u, v) / _diameter(hull)
+    lower = _total(max(in_hull, by_length), n_links)
+    chain = _best_chain(space, nodes, n_links)
+    if chain is None:
+        return Bounds(lower, math.inf)
+    upper = _improved(space, chain, n_links)
+    return Bounds(lower, max(upper, lower))
+
+
+def chain_cost(space: Space, chain: Floats, n_links: float) -> float:
+    """Sum of the cross-ratio distances along a chain (m, dim), or its limit; inf if blocked."""
+    ratios = cross_ratio_distance(space, chain[:-1], chain[1:])
+    return float((hilbert_distance(ratios) if n_links == math.inf else ratios).sum())
+
+
+def hull_of(space: Space) -> Space:
+    """Return the convex hull of a set in the plane; where its corners are unknown, its bounds."""
+    if isinstance(space, BallSpace | BoxSpace | PolytopeSpace):
+        return space
+    points = corners(space).points
+    if len(points) == 0:
+        return BoxSpace(*space.bounds)
+    sides = ConvexHull(points).equations
+    return PolytopeSpace(sides[:, :2], -sides[:, 2])
+
+
+def _total(hilbert: float, n_links: float) -> float:
+    """Sum of the distances of even parts of a segment of this Hilbert length."""
+    return hilbert if n_links == math.inf else n_links * math.expm1(hilbert / n_links)
+
+
+def _scattered(space: Space, seed: int) -> Floats:
+    """Points (k, 2) of the set, uniform over its bounds."""
+    rng = np.random.default_rng(seed)
+    drawn = rng.uniform(*space.bounds, size=(20 * N_POINTS, 2))
+    return drawn[space.contains(drawn)][:N_POINTS]
+
+
+def _diameter(hull: Space) -> float:
+    if isinstance(hull, BallSpace):
+        return 2.0 * hull.radius
+    points = corners(hull).points
+    return float(np.linalg.norm(points[:, None] - points, axis=2).max())
+
+
+def _pairwise(space: Space, nodes: Floats) -> Floats:
+    """Cross-ratio distances (k, k) of points (k, 2); inf where they do not see each other."""
+    first, second = np.triu_indices(len(nodes), 1)
+    ratios = np.zeros((len(nodes), len(nodes)))
+    ratios[first, second] = cross_ratio_distance(space, nodes[first], nodes[second])
+    return ratios + ratios.T
+
+
+def _shortest_length(space: Space, u: Floats, v: Floats) -> float:
+    """Length of the shortest path, over the corners it can turn at; else the straight distance."""
+    nodes = np.concatenate([[u, v], corners(space).turns])
+    straight = float(np.linalg.norm(v - u))
+    if len(nodes) == 2:
+        return straight
+    seen = np.isfinite(_pairwise(space, nodes))
+    lengths = np.where(seen, np.linalg.norm(nodes[:, None] - nodes, axis=2), 0.0)
+    found = float(dijkstra(lengths, indices=0)[1])
+    # Turning beside a corner instead of at it makes it a little longer than the shortest.
+    return max(straight, found * (1.0 - 1e-6)) if math.isfinite(found) else straight
+
+
+def _best_chain(space: Space, nodes: Floats, n_links: float) -> Floats | None:
+    """Return the best chain (m, 2) from the first node to the second over the others."""
+    ratios = _pairwise(space, nodes)
+    if n_links == math.inf:
+        costs = np.where(np.isfinite(ratios), np.log1p(np.minimum(ratios, 1e300)), 0.0)
+        total, before = dijkstra(costs, indices=0, return_predecessors=True)
+        steps = [1]
+        while steps[-1] > 0:
+            steps.append(int(before[steps[-1]]))
+        return nodes[steps[::-1]] if math.isfinite(total[1]) else None
+    cost, choices = ratios[0], []
+    for _ in range(int(n_links) - 1):
+        through = cost[:, None] + ratios
+        choices.append(np.argmin(through, axis=0))
+        cost = through.min(axis=0)
+    if not math.isfinite(cost[1]):
+        return None
+    steps = [1]
+    for choice in reversed(choices):
+        steps.append(int(choice[steps[-1]]))
+    return nodes[[0, *steps[::-1]]]
+
+
+def _improved(space: Space, chain: Floats, n_links: float) -> float:
+    """Cost of a chain after its inner points have been moved to where they cost least."""
+    cost = chain_cost(space, chain, n_links)
+    if len(chain) == 2:
+        return cost
+
+    def moved(inner: Floats) -> float:
+        points = np.concatenate([chain[:1], inner.reshape(-1, 2), chain[-1:]])
+        return min(chain_cost(space, points, n_links), 1e6 * (1.0 + cost))
+
+    found = minimize(moved, chain[1:-1].ravel(), method='Powell', options={'xtol': 1e-7})
+    return min(cost, float(found.fun))

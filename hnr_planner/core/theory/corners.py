@@ -1,0 +1,67 @@
+"""Corners of the boundary in the plane: where chords, views and shortest paths have kinks."""
+
+import itertools
+from typing import NamedTuple
+
+from hnr_planner.core.checks import Floats
+from hnr_planner.core.spaces import BoxSpace, GridSpace, PolytopeSpace, Space
+import numpy as np
+
+#: How far beside a corner a path may turn, as a part of the bounds' diagonal.
+BESIDE = 1e-7
+
+
+class Corners(NamedTuple):
+    """
+    Corners of the boundary of a set in the plane.
+
+    Attributes
+    ----------
+    points : (k, 2)
+        All of them. None means that the boundary is smooth, or that nobody knows its corners.
+    turns : (m, 2)
+        Free points just beside those that reach into the set, at which shortest paths turn.
+
+    """
+
+    points: Floats
+    turns: Floats
+
+
+def corners(space: Space) -> Corners:
+    """Return the corners of a grid, box or polytope in the plane; none for other spaces."""
+    none = np.empty((0, 2))
+    if isinstance(space, GridSpace):
+        return _grid_corners(space)
+    if isinstance(space, BoxSpace) and space.dim == 2:
+        return Corners(np.array(list(itertools.product(*zip(*space.bounds, strict=True)))), none)
+    if isinstance(space, PolytopeSpace) and space.dim == 2:
+        return Corners(_polytope_corners(*space.data), none)
+    return Corners(none, none)
+
+
+def _grid_corners(space: GridSpace) -> Corners:
+    """Grid points around which blocked cells are neither none, nor a side, nor all."""
+    blocked = np.pad(space.blocked, 1, constant_values=True)
+    around = np.stack([blocked[:-1, :-1], blocked[:-1, 1:], blocked[1:, :-1], blocked[1:, 1:]])
+    count = around.sum(axis=0)
+    diagonal = (count == 2) & (around[0] == around[3])
+    row, column = np.nonzero((count == 1) | (count == 3) | diagonal)
+    at = np.stack([column, row], axis=1).astype(np.float64) + space.frame.RIM
+    offsets = np.array([(-1.0, -1.0), (1.0, -1.0), (-1.0, 1.0), (1.0, 1.0)])
+    reflex = count[row, column] == 1
+    away = -offsets[np.argmax(around[:, row[reflex], column[reflex]], axis=0)]
+    lower, upper = space.kernel_bounds
+    beside = at[reflex] + away * (BESIDE * float(np.linalg.norm(upper - lower)))
+    return Corners(space.from_kernel(at), space.from_kernel(beside))
+
+
+def _polytope_corners(normals: Floats, offsets: Floats) -> Floats:
+    """Points where two of the lines meet and no other cuts them off."""
+    found = []
+    for i, j in itertools.combinations(range(len(offsets)), 2):
+        if abs(np.linalg.det(normals[[i, j]])) > 1e-12:
+            point = np.linalg.solve(normals[[i, j]], offsets[[i, j]])
+            if (normals @ point <= offsets + 1e-9 * (1.0 + np.abs(offsets))).all():
+                found.append(point)
+    return np.array(found).reshape(-1, 2)

@@ -1,0 +1,83 @@
+"""Curvature of a set: how sharply its boundary turns, by its length (paper, Assumption 3)."""
+
+import math
+from typing import NamedTuple
+
+from hnr_planner.core.checks import Floats
+from hnr_planner.core.spaces.space import Space
+from hnr_planner.core.theory.rays import reach
+import numpy as np
+from numpy.typing import ArrayLike
+
+
+class Curvature(NamedTuple):
+    """
+    Curvature of one closed curve.
+
+    Attributes
+    ----------
+    largest : float
+        Largest curvature [1/m].
+    perimeter : float
+        Length of the curve [m].
+
+    """
+
+    largest: float
+    perimeter: float
+
+    @property
+    def kappa(self) -> float:
+        """The paper's kappa_H R_H: without unit, at least 2 pi, infinite at corners."""
+        return self.largest * self.perimeter
+
+
+def curve_curvature(points: Floats) -> Curvature:
+    """
+    Measure a smooth closed curve in the plane.
+
+    Parameters
+    ----------
+    points : (k, 2)
+        The curve at k equal steps of a smooth periodic parameter. Derivatives are those of the
+        trigonometric interpolation, so k has to resolve the sharpest turn.
+
+    """
+    curve = points[:, 0] + 1j * points[:, 1]
+    k = len(curve)
+    frequency = np.fft.fftfreq(k, 1.0 / k)
+    if k % 2 == 0:
+        frequency[k // 2] = 0.0  # it has no direction of turning
+    spectrum = np.fft.fft(curve)
+    velocity = np.fft.ifft(1j * frequency * spectrum)
+    acceleration = np.fft.ifft(-(frequency**2) * spectrum)
+    speed = np.abs(velocity)
+    turning = np.abs((velocity.conj() * acceleration).imag) / speed**3
+    return Curvature(float(turning.max()), 2.0 * math.pi * float(speed.mean()))
+
+
+def slice_curvature(
+    space: Space, centre: ArrayLike, first: ArrayLike, second: ArrayLike, n_points: int = 4096
+) -> Curvature:
+    """
+    Measure the boundary of a plane slice that is star-shaped about ``centre``.
+
+    Where the slice has several parts it is the one around ``centre``: the paper's kappa_H R_H is
+    at least as large.
+
+    Parameters
+    ----------
+    space : Space
+        The set.
+    centre : (dim,)
+        A free point that sees all of the slice's boundary.
+    first, second : (dim,)
+        Orthogonal unit vectors that span the plane.
+    n_points : int
+        Points on the boundary.
+
+    """
+    angle = np.arange(n_points) * (2.0 * math.pi / n_points)
+    flat = np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    directions = flat @ np.stack([np.asarray(first, float), np.asarray(second, float)])
+    return curve_curvature(reach(space, np.asarray(centre, float), directions)[:, None] * flat)

@@ -1,0 +1,53 @@
+"""
+How long a path of Hit-and-Run is: what mixing gives, beside the expected number of transitions.
+
+The planner walks until it is in the goal G, and its path is the whole walk. Once mixed, a walk is
+in G with probability sigma(G), the goal's part of the area: about t_mix / sigma(G) transitions
+(paper, Section 1). On the cells of a lattice the expectation itself is the solution of a linear
+system, so that the two can be compared.
+"""
+
+from hnr_planner.core.checks import Floats
+from hnr_planner.core.errors import RequestError
+from hnr_planner.core.theory.conductance import CellFlow
+import numpy as np
+from numpy.typing import NDArray
+
+
+def mixing_time(flow: CellFlow, start: int, epsilon: float = 0.25) -> int:
+    """Count the steps from a cell until the law over cells is within ``epsilon`` of uniform."""
+    kernel, stationary = flow.kernel, flow.area / flow.area.sum()
+    law = np.zeros(len(stationary))
+    law[start] = 1.0
+    steps = 0
+    while 0.5 * np.abs(law - stationary).sum() > epsilon:
+        law = law @ kernel
+        steps += 1
+        if steps > 1_000_000:
+            raise RequestError('not mixed after 1000000 steps: are the cells connected?')
+    return steps
+
+
+def expected_transitions(flow: CellFlow, goal: NDArray[np.bool_]) -> Floats:
+    """Return the mean transitions (m,) from each cell until the walk is in a ``goal`` (m,)."""
+    outside = ~goal
+    kernel = flow.kernel[np.ix_(outside, outside)]
+    transitions = np.zeros(len(goal))
+    transitions[outside] = np.linalg.solve(np.eye(len(kernel)) - kernel, np.ones(len(kernel)))
+    return transitions
+
+
+def mixing_estimate(mixing: float, goal_fraction: float) -> float:
+    """Transitions that mixing suggests: t_mix / sigma(G), a new look after every mixing time."""
+    return mixing / goal_fraction
+
+
+def transitions_bound(relaxation: float, goal_fraction: float, warmth: float = 1.0) -> float:
+    """
+    Bound on the expected transitions into a goal: M t_rel (1 - sigma(G)) / sigma(G).
+
+    For a reversible chain from its stationary law that is Dirichlet's principle (Aldous and Fill,
+    "Reversible Markov chains and random walks on graphs", Section 3.6); a start of density at most
+    ``warmth`` times the stationary one takes at most so many times longer.
+    """
+    return warmth * relaxation * (1.0 - goal_fraction) / goal_fraction

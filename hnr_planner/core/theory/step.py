@@ -1,0 +1,111 @@
+"""What one step of Hit-and-Run does: P_u(A), means, the step F(u), and how two steps differ."""
+
+from collections.abc import Callable
+
+from hnr_planner.core.checks import check_point, Floats
+from hnr_planner.core.errors import RequestError
+from hnr_planner.core.spaces.space import Space
+from hnr_planner.core.theory.density import transition_density
+from hnr_planner.core.theory.rays import chords, half_sphere, lengths_within, reach
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.optimize import brentq
+
+#: Lines through a point in a quadrature, about, and places on each where those are needed.
+N_DIRECTIONS = 720
+N_POSITIONS = 128
+
+
+def step_probability(
+    space: Space, u: ArrayLike, region: Space, n_directions: int = N_DIRECTIONS
+) -> float:
+    """
+    Probability P_u(A) that a step from ``u`` (dim,) ends in ``region``.
+
+    The mean over all lines of how much of the chord lies in the region: exact on each line, and
+    over the angle to rounding where the corners of both are known.
+    """
+    u = _free_point(space, u)
+    directions, weights = half_sphere(u, n_directions, space, region)
+    behind, ahead = chords(space, u, directions)
+    points = np.broadcast_to(u, directions.shape)
+    inside = lengths_within(region, points, directions, -behind, ahead)
+    return float(weights @ (inside / (behind + ahead)))
+
+
+def step_mean(
+    space: Space,
+    u: ArrayLike,
+    function: Callable[[Floats], Floats],
+    n_directions: int = N_DIRECTIONS,
+    n_positions: int = N_POSITIONS,
+) -> float:
+    """
+    Mean of ``function`` ((k, dim) -> (k,)) over where a step from ``u`` (dim,) ends.
+
+    The middle of ``n_positions`` equal parts stands for each part of a chord.
+    """
+    u = _free_point(space, u)
+    directions, weights = half_sphere(u, n_directions, space)
+    behind, ahead = chords(space, u, directions)
+    fractions = (np.arange(n_positions) + 0.5) / n_positions
+    s = -behind[:, None] + fractions * (behind + ahead)[:, None]
+    points = u + s[:, :, None] * directions[:, None, :]
+    values = function(points.reshape(-1, space.dim)).reshape(s.shape)
+    return float(weights @ values.mean(axis=1))
+
+
+def step_length(
+    space: Space, u: ArrayLike, probability: float = 1.0 / 8.0, n_directions: int = N_DIRECTIONS
+) -> float:
+    """
+    Length that a step from ``u`` (dim,) does not exceed with ``probability``.
+
+    With 1/8, as it stands there, it is the paper's F(u) (Section 3.3, before equation (6)).
+    """
+    u = _free_point(space, u)
+    directions, weights = half_sphere(u, n_directions, space)
+    behind, ahead = chords(space, u, directions)
+
+    def excess(length: float) -> float:
+        within = np.minimum(length, behind) + np.minimum(length, ahead)
+        return float(weights @ (within / (behind + ahead))) - probability
+
+    farthest = float(max(behind.max(), ahead.max()))
+    return float(brentq(excess, 0.0, farthest, xtol=1e-14 * farthest))
+
+
+def step_overlap(space: Space, u: ArrayLike, v: ArrayLike) -> float:
+    """
+    Mass that the laws of a step from ``u`` and from ``v`` (dim,) have in common.
+
+    One minus their total variation distance: the mean over a step from ``u`` of min(1, f_v / f_u).
+    """
+    u, v = _free_point(space, u), _free_point(space, v)
+    if (u == v).all():
+        return 1.0
+
+    def ratio(points: Floats) -> Floats:
+        of_u = transition_density(space, u, points)
+        return np.minimum(1.0, transition_density(space, v, points) / of_u)
+
+    return step_mean(space, u, ratio)
+
+
+def unseen_probability(space: Space, u: ArrayLike, v: ArrayLike) -> float:
+    """Probability that a step from ``u`` ends where ``v`` (dim,) does not see it (Lemma 11)."""
+    u, v = _free_point(space, u), _free_point(space, v)
+
+    def unseen(points: Floats) -> Floats:
+        away = points - v
+        distance = np.linalg.norm(away, axis=1)
+        return reach(space, v, away / distance[:, None]) <= distance
+
+    return step_mean(space, u, unseen)
+
+
+def _free_point(space: Space, u: ArrayLike) -> Floats:
+    point = check_point('point', u, space.dim)
+    if not space.contains(point):
+        raise RequestError(f'point {point.tolist()} is {space.why_not_free(point)}')
+    return point

@@ -1,0 +1,55 @@
+"""The view: what can be seen from a point (paper, Section 3.1)."""
+
+import math
+
+from hnr_planner.core.checks import check_point, Floats
+from hnr_planner.core.errors import RequestError
+from hnr_planner.core.spaces.space import Space
+from hnr_planner.core.theory.corners import corners
+from hnr_planner.core.theory.rays import reach
+import numpy as np
+from numpy.typing import ArrayLike
+
+#: Directions nearer to each other than this [rad] count as one.
+NARROWEST = 1e-12
+
+
+def view(space: Space, u: ArrayLike, n_directions: int = 720) -> Floats:
+    """
+    Return the polygon (m, 2) of the points of the plane that ``u`` (2,) sees, counter-clockwise.
+
+    Between the directions of two neighbouring corners the view ends on one straight wall, so two
+    rays tell it exactly. A space whose corners are not known is looked at in ``n_directions``: a
+    polygon with its vertices on the boundary.
+    """
+    if space.dim != 2:
+        raise RequestError(f'a view is a polygon in the plane, the space has {space.dim} axes')
+    u = check_point('u', u, 2)
+    if not space.contains(u):
+        raise RequestError(f'u {u.tolist()} is {space.why_not_free(u)}')
+    away = corners(space).points - u
+    if len(away) == 0:
+        turn = _unit(
+            (np.arange(n_directions, dtype=np.float64) + 0.5) * (2.0 * math.pi / n_directions)
+        )
+        return u + reach(space, u, turn)[:, None] * turn
+    breaks = np.unique(np.arctan2(away[:, 1], away[:, 0])).astype(np.float64)
+    first, width = breaks, np.diff(breaks, append=breaks[0] + 2.0 * math.pi)
+    first, width = first[width > NARROWEST], width[width > NARROWEST]
+    # Walls are lines a . (p - u) = 1, so a . e(angle) = 1 / reach: two rays give a (2,).
+    rays = [_unit(first + part * width) for part in (0.25, 0.75)]
+    inverse = np.stack([1.0 / reach(space, u, ray) for ray in rays], axis=1)
+    walls = np.linalg.solve(np.stack(rays, axis=1), inverse[:, :, None])[:, :, 0]
+    ends = [_unit(first), _unit(first + width)]
+    corners_seen = [ray / (walls * ray).sum(axis=1)[:, None] for ray in ends]
+    return u + np.stack(corners_seen, axis=1).reshape(-1, 2)
+
+
+def polygon_area(polygon: Floats) -> float:
+    """Area of a polygon (m, 2), positive when counter-clockwise."""
+    x, y = (polygon - polygon[0]).T
+    return float(x @ np.roll(y, -1) - y @ np.roll(x, -1)) / 2.0
+
+
+def _unit(angles: Floats) -> Floats:
+    return np.stack([np.cos(angles), np.sin(angles)], axis=1)

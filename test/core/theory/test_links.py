@@ -1,0 +1,67 @@
+"""Bounds on the link diameter, against numbers counted by hand."""
+
+import math
+from test.core.theory.sets import ELL, PLUS, YOU
+from test.laws.maps import CHECKERBOARD, CORRIDOR, drawn, ONE_CELL, SPIRAL, TWO_ROOMS
+
+from hnr_planner.core import GridSpace, RequestError
+from hnr_planner.core.theory import annulus_sector_links, link_diameter
+import numpy as np
+import pytest
+from scipy.sparse.csgraph import dijkstra
+
+HALL = GridSpace.from_blocked(TWO_ROOMS)
+
+
+@pytest.mark.parametrize(
+    ('space', 'links'),
+    [
+        (GridSpace.from_blocked(ONE_CELL), 1),
+        (GridSpace.from_blocked(CORRIDOR), 1),
+        (ELL, 2),
+        (PLUS, 2),
+        (YOU, 3),
+        (GridSpace.from_blocked(SPIRAL), 7),
+    ],
+    ids=['cell', 'corridor', 'ell', 'plus', 'you', 'spiral'],
+)
+def test_it_is_what_one_counts(space, links):
+    assert link_diameter(space, 2) == (links, links)
+
+
+def test_parts_that_are_not_connected_do_not_count():
+    assert link_diameter(GridSpace.from_blocked(CHECKERBOARD)) == (1, 1)
+
+
+def test_bounds_enclose_and_come_together():
+    bounds = [link_diameter(HALL, parts) for parts in (1, 2, 3)]
+    lower, upper = np.transpose(bounds)
+    assert (lower <= upper.min()).all()
+    assert (np.diff(lower) >= 0).all()
+    assert (np.diff(upper) <= 0).all()
+
+
+def test_chains_over_random_points_are_no_shorter():
+    """What 300 points need among themselves, at the worst, lies between the bounds too."""
+    rng = np.random.default_rng(1)
+    points = rng.uniform(*HALL.bounds, size=(600, 2))
+    points = points[[HALL.connected(point, (0.5, 3.5)) for point in points]][:300]
+    sees = np.array([[HALL.is_motion_valid(a, b) for a in points] for b in points])
+    links = dijkstra(sees, unweighted=True)
+    assert (
+        link_diameter(HALL).lower <= links[np.isfinite(links)].max() <= link_diameter(HALL).upper
+    )
+
+
+def test_a_sector_of_an_annulus():
+    """With radii 1 and 2 a segment turns by up to 120 degrees."""
+    assert annulus_sector_links(1, 2, math.pi / 2) == 2
+    assert annulus_sector_links(1, 2, math.pi) == 3
+    assert annulus_sector_links(1.9, 2, 2 * math.pi) == 11
+    with pytest.raises(RequestError, match='0 < inner < outer, got 2, 1'):
+        annulus_sector_links(2, 1, 1.0)
+
+
+def test_a_grid_without_free_cells_is_refused():
+    with pytest.raises(RequestError, match='every cell'):
+        link_diameter(GridSpace.from_blocked(drawn('##', '##')))
