@@ -25,6 +25,7 @@ setup(
         'pillow>=10.2',
         'pyyaml>=6.0',
         'scipy>=1.11',
+        'shapely>=2.0',
     ],
     extras_require={
         # ROS 2 Jazzy as wheels, for machines without ROS (x86-64 Linux). Never install these

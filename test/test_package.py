@@ -52,6 +52,7 @@ IN_ROSDEP = {
     'matplotlib': 'python3-matplotlib',
     'numpy': 'python3-numpy',
     'scipy': 'python3-scipy',
+    'shapely': 'python3-shapely',
     'yaml': 'python3-yaml',
 }
 NOT_IN_ROSDEP = {'numba'}  # rosdep has a key for it, Ubuntu 24.04 no package

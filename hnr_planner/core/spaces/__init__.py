@@ -4,6 +4,7 @@ from hnr_planner.core.spaces.ball import BallSpace
 from hnr_planner.core.spaces.box import BoxSpace
 from hnr_planner.core.spaces.difference import DifferenceSpace
 from hnr_planner.core.spaces.grid import GridSpace
+from hnr_planner.core.spaces.polygon import PolygonSpace
 from hnr_planner.core.spaces.polytope import PolytopeSpace
 from hnr_planner.core.spaces.product import ProductSpace
 from hnr_planner.core.spaces.space import Chord, Space
@@ -15,6 +16,7 @@ __all__ = [
     'Chord',
     'DifferenceSpace',
     'GridSpace',
+    'PolygonSpace',
     'PolytopeSpace',
     'ProductSpace',
     'Space',
