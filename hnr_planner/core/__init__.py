@@ -24,6 +24,7 @@ from hnr_planner.core.spaces import (
     PolygonSpace,
     PolytopeSpace,
     ProductSpace,
+    ShearedSpace,
     Space,
     UnionSpace,
 )
@@ -49,6 +50,7 @@ __all__ = [
     'ProductSpace',
     'RequestError',
     'Roadmap',
+    'ShearedSpace',
     'Space',
     'SpaceError',
     'UnionSpace',

@@ -11,6 +11,7 @@ from hnr_planner.core import (
     PolygonSpace,
     PolytopeSpace,
     ProductSpace,
+    ShearedSpace,
     UnionSpace,
 )
 import numpy as np
@@ -107,6 +108,8 @@ SPACES: dict[str, Callable[[], object]] = {
     'polytope': _truncated_simplex,
     'polygon': _gear,
     'polygons': _rooms,
+    'sheared ball': lambda: ShearedSpace(BallSpace((1.0, -2.0, 0.5), 0.75), -1.5),
+    'sheared box': lambda: ShearedSpace(BoxSpace((0.0, 0.0), (3.0, 0.5)), 0.8),
     'union of a kind': lambda: UnionSpace(
         BoxSpace((0.0, 0.0), (0.3, 1.0)),
         BoxSpace((0.1 + 0.2, 0.0), (1.0, 0.2)),

@@ -7,6 +7,7 @@ from hnr_planner.core.spaces.grid import GridSpace
 from hnr_planner.core.spaces.polygon import PolygonSpace
 from hnr_planner.core.spaces.polytope import PolytopeSpace
 from hnr_planner.core.spaces.product import ProductSpace
+from hnr_planner.core.spaces.sheared import ShearedSpace
 from hnr_planner.core.spaces.space import Chord, Space
 from hnr_planner.core.spaces.union import UnionSpace
 
@@ -19,6 +20,7 @@ __all__ = [
     'PolygonSpace',
     'PolytopeSpace',
     'ProductSpace',
+    'ShearedSpace',
     'Space',
     'UnionSpace',
 ]
