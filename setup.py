@@ -27,6 +27,7 @@ setup(
         'pillow>=10.2',
         'pyyaml>=6.0',
         'scipy>=1.11',
+        'shapely>=2.0',
         'tqdm>=4.66',
     ],
     extras_require={

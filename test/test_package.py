@@ -58,6 +58,7 @@ IN_ROSDEP = {
     'matplotlib': 'python3-matplotlib',
     'numpy': 'python3-numpy',
     'scipy': 'python3-scipy',
+    'shapely': 'python3-shapely',
     'tqdm': 'python3-tqdm',
     'yaml': 'python3-yaml',
 }

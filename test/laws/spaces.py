@@ -8,11 +8,14 @@ from hnr_planner.core import (
     BoxSpace,
     DifferenceSpace,
     GridSpace,
+    PolygonSpace,
     PolytopeSpace,
     ProductSpace,
+    ShearedSpace,
     UnionSpace,
 )
 import numpy as np
+import shapely
 
 TURNED = (3.0, -2.0, 0.7)
 SHIFTED = (-12.3, 4.56, 0.0)
@@ -30,6 +33,35 @@ def _truncated_simplex() -> PolytopeSpace:
     """Return x > 0, x + y + z < 1, cut off at x < .7."""
     normals = np.vstack([-np.eye(3), np.ones((1, 3)), [[2.0, 0.0, 0.0]]])
     return PolytopeSpace(normals, [0.0, 0.0, 0.0, 1.0, 1.4])
+
+
+def _gear() -> PolygonSpace:
+    """Return a wheel with 40 teeth and a round hole."""
+    angles = np.linspace(0.0, 2.0 * np.pi, 160, endpoint=False)
+    radii = np.where(np.arange(160) // 2 % 2 == 0, 3.0, 2.6)
+    rim = np.stack([5.0 + radii * np.cos(angles), radii * np.sin(angles)], axis=1)
+    return PolygonSpace(shapely.Polygon(rim).difference(shapely.Point(5.0, 0.3).buffer(1.0)))
+
+
+def _rooms() -> PolygonSpace:
+    """Return two polygons that touch in a point, one with holes of which two touch the ring."""
+    hall = shapely.box(0.0, 0.0, 4.0, 3.0).difference(
+        shapely.union_all(
+            [
+                shapely.box(1.0, 1.0, 1.5, 2.0),
+                shapely.Polygon([(2.0, 0.0), (2.5, 1.0), (1.8, 1.2)]),
+                shapely.Polygon([(3.0, 3.0), (2.5, 2.0), (3.5, 1.5)]),
+            ]
+        )
+    )
+    return PolygonSpace(shapely.MultiPolygon([hall, shapely.box(4.0, 3.0, 5.0, 5.0)]))
+
+
+def _hall_with_tables() -> DifferenceSpace:
+    """Return a turned map without two polygons, one of them across its edge."""
+    tables = [shapely.box(3.05, -1.9, 3.1, -1.8), shapely.Point(3.1, -2.0).buffer(0.1)]
+    hall = GridSpace.from_blocked(maps.TWO_ROOMS, 0.05, TURNED)
+    return DifferenceSpace(hall, PolygonSpace(shapely.MultiPolygon(tables)))
 
 
 def _box_without_balls() -> DifferenceSpace:
@@ -74,6 +106,10 @@ SPACES: dict[str, Callable[[], object]] = {
     'interval': lambda: BoxSpace([3.0], [4.0]),
     'ball': lambda: BallSpace((5.0, -3.0, 0.5), 0.25),
     'polytope': _truncated_simplex,
+    'polygon': _gear,
+    'polygons': _rooms,
+    'sheared ball': lambda: ShearedSpace(BallSpace((1.0, -2.0, 0.5), 0.75), -1.5),
+    'sheared box': lambda: ShearedSpace(BoxSpace((0.0, 0.0), (3.0, 0.5)), 0.8),
     'union of a kind': lambda: UnionSpace(
         BoxSpace((0.0, 0.0), (0.3, 1.0)),
         BoxSpace((0.1 + 0.2, 0.0), (1.0, 0.2)),
@@ -90,6 +126,7 @@ SPACES: dict[str, Callable[[], object]] = {
     'difference with many balls': _box_without_balls,
     'grid and box': _grid_with_a_room_beside,
     'difference in a difference': _nested,
+    'grid without polygons': _hall_with_tables,
     'product': lambda: ProductSpace(
         GridSpace.from_blocked(maps.TWO_ROOMS, 0.1), BallSpace([0.0], 2)
     ),

@@ -5,8 +5,10 @@ from hnr_planner.core.spaces.ball import BallSpace
 from hnr_planner.core.spaces.box import BoxSpace
 from hnr_planner.core.spaces.difference import DifferenceSpace
 from hnr_planner.core.spaces.grid import GridSpace
+from hnr_planner.core.spaces.polygon import PolygonSpace
 from hnr_planner.core.spaces.polytope import PolytopeSpace
 from hnr_planner.core.spaces.product import ProductSpace
+from hnr_planner.core.spaces.sheared import ShearedSpace
 from hnr_planner.core.spaces.space import Chord, Space
 from hnr_planner.core.spaces.union import UnionSpace
 
@@ -16,8 +18,10 @@ __all__ = [
     'Chord',
     'DifferenceSpace',
     'GridSpace',
+    'PolygonSpace',
     'PolytopeSpace',
     'ProductSpace',
+    'ShearedSpace',
     'Space',
     'UnionSpace',
 ]

@@ -1,0 +1,292 @@
+"""A ball or a box under a shear: a set that is not convex, with its map to one that is."""
+
+import math
+from typing import NamedTuple
+
+from hnr_planner.core.checks import check_point, check_points, check_real, Floats
+from hnr_planner.core.errors import SpaceError
+from hnr_planner.core.kernels import kernel
+from hnr_planner.core.spaces.ball import BallSpace
+from hnr_planner.core.spaces.bounds import check_bounds
+from hnr_planner.core.spaces.box import BoxSpace
+from hnr_planner.core.spaces.polynomials import next_change, value
+from hnr_planner.core.spaces.primitives import Primitives, register
+from hnr_planner.core.spaces.space import Space
+import numpy as np
+from numpy.typing import ArrayLike
+
+#: What is pressed together more than this leaves no room that coordinates resolve.
+STRETCH_MAX = 1e4
+#: Rounding of a coordinate mapped back, as a part of its terms, with room to spare.
+ROUNDING = 32 * 2.0**-53
+#: How far around the bounds a line is followed, as a part of their sides.
+AROUND = 1e-6
+
+
+class ShearedData(NamedTuple):
+    """
+    A compiled ball or box under a shear.
+
+    Attributes
+    ----------
+    lower, upper : (dim,)
+        Corners of the box, or of a box around the ball.
+    centre : (dim,)
+        Its centre.
+    radius : float
+        That of the ball; 0 for a box.
+    bend : float
+        The last coordinate is moved by this times the square of the first, seen from the centre.
+    rounding : float
+        What rounding can make of 0 in an inequality.
+    begin, end : (dim,)
+        Corners of a box around the image, with room to spare.
+
+    """
+
+    lower: Floats
+    upper: Floats
+    centre: Floats
+    radius: float
+    bend: float
+    rounding: float
+    begin: Floats
+    end: Floats
+
+
+class ShearedSpace(Space):
+    """
+    The image of a ball or a box under a shear that keeps volume.
+
+    The map ``g`` moves the last coordinate by ``bend`` times the square of the first: a banana.
+    Its Jacobian has determinant 1, so that uniform points of the base go to uniform points of the
+    image, and both of its Lipschitz constants are known exactly: what the paper's Assumption 2
+    asks for.
+
+    Parameters
+    ----------
+    base : BallSpace or BoxSpace
+        The convex set, Omega in the paper; of dimension 2 at least.
+    bend : float
+        The shear [1/m]: ``g(x) = x + bend (x_1 - c_1)^2 e_n``, where c is the centre of the base.
+
+    Raises
+    ------
+    SpaceError
+        When the base is another space, or the numbers describe no such image.
+
+    Attributes
+    ----------
+    base : BallSpace or BoxSpace
+    bend : float
+    stretch : float
+        Lipschitz constant of g, the paper's L_Sigma: the largest that cannot be improved.
+    shrink : float
+        That of the inverse, the paper's L_Omega: equal to it.
+
+    """
+
+    def __init__(self, base: BallSpace | BoxSpace, bend: float) -> None:
+        if not isinstance(base, BallSpace | BoxSpace):
+            raise SpaceError(f'base must be a BallSpace or a BoxSpace, got {base!r}')
+        if base.dim < 2:
+            raise SpaceError('base must have two dimensions at least, it has 1')
+        self.base, self.dim = base, base.dim
+        self.bend = check_real('bend', bend, SpaceError)
+        if not math.isfinite(self.bend):
+            raise SpaceError(f'bend must be finite, got {self.bend!r}')
+        self.stretch = self.shrink = _largest_stretch(base, self.bend)
+        if self.stretch > STRETCH_MAX:
+            raise SpaceError(
+                f'bend must press the base together by no more than {STRETCH_MAX:g}, but '
+                f'{self.bend!r} does by {self.stretch:g}'
+            )
+        self._lower, self._upper = _bounds(base, self.bend)
+        check_bounds('the sheared space', self._lower, self._upper)
+        rim = AROUND * (self._upper - self._lower)
+        self.data = ShearedData(
+            *base.bounds,
+            _centre(base),
+            base.radius if isinstance(base, BallSpace) else 0.0,
+            self.bend,
+            _rounding(base, self.bend),
+            self._lower - rim,
+            self._upper + rim,
+        )
+
+    @property
+    def bounds(self) -> tuple[Floats, Floats]:
+        """Lower and upper corner (dim,)."""
+        return self._lower.copy(), self._upper.copy()
+
+    @property
+    def typical_clearance(self) -> float:
+        """That of the base, where it is pressed together most."""
+        return self.base.typical_clearance / self.shrink
+
+    def image(self, points: ArrayLike) -> Floats:
+        """Return g of points (..., dim) of the base."""
+        return self._moved(points, self.bend)
+
+    def preimage(self, points: ArrayLike) -> Floats:
+        """Return the inverse of g of points (..., dim)."""
+        return self._moved(points, -self.bend)
+
+    def why_not_free(self, point: ArrayLike) -> str:
+        """Say in words why ``point`` (dim,) is not free."""
+        reason = self.base.why_not_free(self.preimage(check_point('point', point, self.dim)))
+        return f'mapped back, {reason}'
+
+    def _moved(self, points: ArrayLike, bend: float) -> Floats:
+        moved = check_points('points', points, self.dim)
+        moved[..., -1] += bend * (moved[..., 0] - self.data.centre[0]) ** 2
+        return moved
+
+
+def _centre(base: BallSpace | BoxSpace) -> Floats:
+    lower, upper = base.bounds
+    return base.centre.copy() if isinstance(base, BallSpace) else (lower + upper) / 2.0
+
+
+def _bounds(base: BallSpace | BoxSpace, bend: float) -> tuple[Floats, Floats]:
+    """Lower and upper corner (dim,) of the image."""
+    lower, upper = base.bounds
+    half = (upper[0] - lower[0]) / 2.0
+    if isinstance(base, BoxSpace):
+        reach = bend * half**2
+    elif 2.0 * abs(bend) * half <= 1.0:
+        reach = 0.0
+    else:
+        # The highest point of t + bend (half^2 - t^2), beyond the height of the ball.
+        reach = math.copysign(1.0 / (4.0 * abs(bend)) + abs(bend) * half**2 - half, bend)
+    lower[-1] += min(reach, 0.0)
+    upper[-1] += max(reach, 0.0)
+    return lower, upper
+
+
+def _largest_stretch(base: BallSpace | BoxSpace, bend: float) -> float:
+    """
+    Return the largest of ``|g(x) - g(y)| / |x - y|``, which is also that of ``|x - y| / |g - g|``.
+
+    ``g(x) - g(y) = (1 + k e_n e_1^T) (x - y)`` with ``k = bend (x_1 + y_1 - 2 c_1)``, exactly: a
+    linear shear, whose largest and whose inverse's largest singular value are both
+    ``(|k| + sqrt(k^2 + 4)) / 2``.
+    """
+    lower, upper = base.bounds
+    k = abs(bend) * float(upper[0] - lower[0])
+    return (k + math.hypot(k, 2.0)) / 2.0
+
+
+def _rounding(base: BallSpace | BoxSpace, bend: float) -> float:
+    """Return what rounding can make of 0 in an inequality: a length, its square for a ball."""
+    lower, upper = base.bounds
+    half = float(upper[0] - lower[0]) / 2.0
+    size = float(np.abs([lower, upper]).max()) + abs(bend) * half**2
+    return ROUNDING * size * (half if isinstance(base, BallSpace) else 1.0)
+
+
+@kernel
+def _contains(sheared, x):
+    return _holds(sheared, x, False)
+
+
+@kernel
+def _touches(sheared, x):
+    return _holds(sheared, x, True)
+
+
+@kernel
+def _holds(sheared, x, closed):
+    coefficients, still = np.empty(5), np.zeros(len(x))
+    for k in range(_count(sheared)):
+        _write(sheared, k, x, still, coefficients)
+        if not (coefficients[0] < 0.0 or (closed and coefficients[0] == 0.0)):
+            return False
+    return True
+
+
+@kernel
+def _leave(sheared, x, u, t, enough):
+    """Leave at the first inequality that fails."""
+    _, last = _within(sheared, x, u)
+    if t >= last:
+        return t
+    coefficients, rounding, s = np.empty(5), sheared.rounding, math.inf
+    for k in range(_count(sheared)):
+        end = _write(sheared, k, x, u, coefficients) + 1
+        if not value(coefficients[:end], t) < 0.0:
+            return t
+        s = min(s, next_change(coefficients[:end], t, last, False, rounding))
+    return s
+
+
+@kernel
+def _enter(sheared, x, u, t):
+    """Go on to where an inequality holds that does not, until all hold at once."""
+    first, last = _within(sheared, x, u)
+    coefficients, rounding = np.empty(5), sheared.rounding
+    s, k, held = max(t, first), 0, 0
+    while held < _count(sheared):
+        if s >= last:
+            return math.inf
+        end = _write(sheared, k, x, u, coefficients) + 1
+        held += 1
+        if not value(coefficients[:end], s) <= 0.0:
+            s, held = next_change(coefficients[:end], s, last, True, rounding), 1
+        k = (k + 1) % _count(sheared)
+    return s
+
+
+@kernel
+def _within(sheared, x, u):
+    """Return where a line comes into the box around the image, and where it goes out."""
+    first, last = -math.inf, math.inf
+    for i in range(len(x)):
+        below, above = sheared.begin[i] - x[i], sheared.end[i] - x[i]
+        if u[i] != 0.0:
+            first = max(first, min(below / u[i], above / u[i]))
+            last = min(last, max(below / u[i], above / u[i]))
+        elif not below <= 0.0 <= above:
+            return math.inf, -math.inf
+    return first, last
+
+
+@kernel
+def _count(sheared):
+    """Return how many inequalities there are: one for a ball, one for each face of a box."""
+    return 1 if sheared.radius > 0.0 else 2 * len(sheared.centre)
+
+
+@kernel
+def _write(sheared, k, x, u, coefficients):
+    """
+    Write inequality ``k`` along ``x + s u`` as a polynomial in s, below 0 inside; its degree.
+
+    Mapped back, the line is a parabola: only its last coordinate is not linear.
+    """
+    c, n = coefficients, len(x)
+    aside = x[0] - sheared.centre[0]
+    q0 = x[n - 1] - sheared.bend * aside * aside
+    q1 = u[n - 1] - 2.0 * sheared.bend * aside * u[0]
+    q2 = -sheared.bend * u[0] * u[0]
+    if sheared.radius > 0.0:
+        q0 -= sheared.centre[n - 1]
+        c[0], c[1], c[2] = q0 * q0, 2.0 * q0 * q1, q1 * q1 + 2.0 * q0 * q2
+        c[3], c[4] = 2.0 * q1 * q2, q2 * q2
+        for i in range(n - 1):
+            offset = x[i] - sheared.centre[i]
+            c[0] += offset * offset
+            c[1] += 2.0 * offset * u[i]
+            c[2] += u[i] * u[i]
+        c[0] -= sheared.radius * sheared.radius
+        return 4
+    i = k // 2
+    c[0], c[1], c[2] = (q0, q1, q2) if i == n - 1 else (x[i], u[i], 0.0)
+    if k % 2 == 0:
+        c[0] -= sheared.upper[i]
+    else:
+        c[0], c[1], c[2] = sheared.lower[i] - c[0], -c[1], -c[2]
+    return 2 if i == n - 1 else 1
+
+
+register(ShearedData, Primitives(_contains, _touches, _leave, _enter))
