@@ -104,8 +104,8 @@ def relaxation_time(cells: ArrayLike, lag: int = 1) -> float:
     numbers, lag = _check_cells(cells, 2), check_count('lag', lag, 1)
     if numbers.shape[1] <= lag or not len(numbers):
         raise RequestError(f'cells must have chains longer than lag {lag}, got {numbers.shape}')
-    visited, place = np.unique(numbers, return_inverse=True)
-    n, place = len(visited), place.reshape(numbers.shape)
+    visited = np.unique(numbers)
+    n, place = len(visited), np.searchsorted(visited, numbers)
     pairs = place[:, :-lag] * n + place[:, lag:]
     moves = np.bincount(pairs.ravel(), minlength=n * n).reshape(n, n)
     both = moves + moves.T

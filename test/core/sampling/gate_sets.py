@@ -1,0 +1,95 @@
+"""The sets that walks are tested on: as regions, and as spaces of the package."""
+
+from functools import cache
+from test.laws import maps
+from test.regions import CellRegion, Points, PolytopeRegion, Region, UnionRegion
+from typing import NamedTuple
+
+from hnr_planner.core import (
+    BallSpace,
+    BoxSpace,
+    DifferenceSpace,
+    GridSpace,
+    PolytopeSpace,
+    Space,
+    UnionSpace,
+)
+import numpy as np
+
+
+class GateSet(NamedTuple):
+    """A set, and points from which single steps are looked at."""
+
+    region: Region
+    space: Space
+    points: Points
+
+
+@cache
+def u_shape() -> GateSet:
+    """Give two arms; a point in one of them, and one between both."""
+    points = np.array([[0.7, 8.3], [3.2, 1.1]])
+    return GateSet(CellRegion(maps.U_SHAPE), GridSpace.from_blocked(maps.U_SHAPE), points)
+
+
+@cache
+def two_rooms() -> GateSet:
+    """Give rooms with a door, furnished; a point beside the door, and one in a room."""
+    points = np.array([[4.6, 3.3], [8.9, 5.2]])
+    return GateSet(CellRegion(maps.TWO_ROOMS), GridSpace.from_blocked(maps.TWO_ROOMS), points)
+
+
+@cache
+def hall_and_dome() -> GateSet:
+    """Give a room, a corridor and a disc in line; a point that sees through the corridor."""
+    corners = np.array([[[0.0, 0.0], [1.0, 1.0]], [[0.9, 0.4], [2.2, 0.6]]])
+    centre, radius = np.array([2.5, 0.5]), 0.5
+    region = UnionRegion(
+        np.zeros(2), np.array([3.0, 1.0]), (9, 3), corners, centre[None], np.array([radius])
+    )
+    space = UnionSpace(*(BoxSpace(*corner) for corner in corners), BallSpace(centre, radius))
+    return GateSet(region, space, np.array([[0.95, 0.55]]))
+
+
+@cache
+def stone_without_its_core() -> GateSet:
+    """Give a cube with a corner cut off, less a ball in it; a point beside the ball."""
+    normals = np.vstack([np.eye(3), -np.eye(3), np.ones((1, 3))])
+    offsets = np.array([1, 1, 1, 0, 0, 0, 2.4])
+    centre, radius = np.array([0.5, 0.45, 0.4]), 0.38
+    region = PolytopeRegion(
+        np.zeros(3), np.ones(3), (3, 3, 3), normals, offsets, centre[None], np.array([radius])
+    )
+    space = DifferenceSpace(PolytopeSpace(normals, offsets), BallSpace(centre, radius))
+    return GateSet(region, space, np.array([[0.9, 0.5, 0.42]]))
+
+
+@cache
+def box_without_balls() -> GateSet:
+    """
+    Give a 10-dimensional cube less ten balls, a quarter of it; of 1000 points the nearest to one.
+
+    Every fifth chord ends at a ball.
+    """
+    dim, radii = 10, np.full(10, 0.8)
+    rng = np.random.default_rng(1)
+    centres = rng.random((10, dim))
+    normals, offsets = np.vstack([np.eye(dim), -np.eye(dim)]), np.repeat([1.0, 0.0], dim)
+    bins = (2,) * 5 + (1,) * 5
+    region = PolytopeRegion(np.zeros(dim), np.ones(dim), bins, normals, offsets, centres, radii)
+    space = DifferenceSpace(
+        BoxSpace(np.zeros(dim), np.ones(dim)),
+        *(BallSpace(centre, radius) for centre, radius in zip(centres, radii, strict=True)),
+    )
+    points = region.uniform(1000, rng)
+    nearest = np.linalg.norm(points[:, None] - centres, axis=2).min(axis=1).argmin()
+    return GateSet(region, space, points[nearest : nearest + 1])
+
+
+SETS = {
+    'u shape': u_shape,
+    'two rooms': two_rooms,
+    'hall and dome': hall_and_dome,
+    'stone, 3-D': stone_without_its_core,
+    'box without balls, 10-D': box_without_balls,
+}
