@@ -114,5 +114,7 @@ def test_a_reader_that_leaves_is_no_error(rooms_file: Path) -> None:
         text=True,
         timeout=120,
     )
-    assert (done.returncode, done.stderr) == (0, '')
+    # A slow machine is told what it waits for.
+    told = [line for line in done.stderr.splitlines() if not line.startswith('compiling')]
+    assert (done.returncode, told) == (0, [])
     assert len(done.stdout.splitlines()) == 2
