@@ -83,7 +83,7 @@ def box_without_balls() -> GateSet:
     )
     points = region.uniform(1000, rng)
     nearest = np.linalg.norm(points[:, None] - centres, axis=2).min(axis=1).argmin()
-    return GateSet(region, space, points[nearest : nearest + 1])
+    return GateSet(region, space, points[[nearest]])
 
 
 SETS = {
