@@ -170,6 +170,80 @@ class UnionRegion(Region):
         return _cuts(points, directions, self.corners, self.centres, self.radii)
 
 
+@dataclass(frozen=True)
+class PolygonRegion(Region):
+    """The points inside of closed rings, those that an odd number of rings surround."""
+
+    lower: Points
+    upper: Points
+    bins: tuple[int, ...]
+    rings: tuple[Points, ...]
+
+    @cached_property
+    def edges(self) -> Points:
+        """Ends (k, 2, 2) of all edges."""
+        return np.concatenate([np.stack([ring, np.roll(ring, -1, 0)], 1) for ring in self.rings])
+
+    def depth(self, points: Points) -> Points:
+        """Return 1 where a ray to the right crosses an odd number of edges, else -1."""
+        odd = np.zeros(len(points), dtype=bool)
+        x, y = points.T
+        for (ax, ay), (bx, by) in self.edges:
+            if ay != by:
+                odd ^= ((ay > y) != (by > y)) & (x < ax + (y - ay) * (bx - ax) / (by - ay))
+        return np.where(odd, 1.0, -1.0)
+
+    def chords(self, points: Points, directions: Points) -> tuple[Points, Points]:
+        """Cut every line with every edge."""
+        x, u = points, directions
+        lower, upper = np.full(len(points), -np.inf), np.full(len(points), np.inf)
+        for a, b in self.edges:
+            along = b - a
+            det = u[:, 0] * along[1] - u[:, 1] * along[0]
+            with np.errstate(divide='ignore', invalid='ignore'):
+                s = ((a[0] - x[:, 0]) * along[1] - (a[1] - x[:, 1]) * along[0]) / det
+                w = ((a[0] - x[:, 0]) * u[:, 1] - (a[1] - x[:, 1]) * u[:, 0]) / det
+            hit = (w >= 0) & (w <= 1)
+            upper = np.where(hit & (s > 0), np.minimum(upper, s), upper)
+            lower = np.where(hit & (s < 0), np.maximum(lower, s), lower)
+        return lower, upper
+
+
+@dataclass(frozen=True)
+class BentRegion(Region):
+    """A box whose last coordinate was moved by ``bend`` times the square of the first."""
+
+    lower: Points
+    upper: Points
+    bins: tuple[int, ...]
+    low: Points
+    high: Points
+    bend: float
+
+    def depth(self, points: Points) -> Points:
+        """Return the least distance to a face of the box, once the points are moved back."""
+        straight = points.copy()
+        straight[:, -1] -= self.bend * points[:, 0] ** 2
+        return np.minimum(straight - self.low, self.high - straight).min(axis=1)
+
+    def chords(self, points: Points, directions: Points) -> tuple[Points, Points]:
+        """Cut every line with the planes and with the two parabolas."""
+        x, u = points, directions
+        a = -self.bend * u[:, 0] ** 2
+        b = u[:, -1] - 2 * self.bend * x[:, 0] * u[:, 0]
+        c = x[:, -1] - self.bend * x[:, 0] ** 2
+        cuts = []
+        with np.errstate(divide='ignore', invalid='ignore'):
+            for face in (self.low, self.high):
+                cuts.extend(((face - x) / u)[:, :-1].T)
+                q = -0.5 * (b + np.copysign(np.sqrt(b**2 - 4 * a * (c - face[-1])), b))
+                cuts.extend((q / a, (c - face[-1]) / q))
+            s = np.array(cuts)
+            upper = np.where(s > 0, s, np.inf).min(axis=0)
+            lower = np.where(s < 0, s, -np.inf).max(axis=0)
+        return lower, upper
+
+
 @numba.njit(cache=True)
 def _chords_past_squares(points, directions, obstacles, rows, cols):
     lower, upper = np.empty(len(points)), np.empty(len(points))

@@ -22,6 +22,9 @@ SQUARES = 16
 N_AXES = 3
 """Above two dimensions, directions are looked at along so many random axes."""
 
+ALPHA = 1e-6 / 150
+"""Right walks have fewer p-values than 150: with fresh seeds, one run in 1e6 would fail."""
+
 
 def one_step(
     region: Region, step: Step, point: ArrayLike, n: int, seed: int
@@ -51,23 +54,22 @@ def t1_uniform_on_the_square(directions: Points, position: Points) -> float:
     """
     if not ((position > 0) & (position < 1)).all():
         return 0.0
+    rows = _sixteenths(directions)
+    column = (position * SQUARES).astype(int)
+    counts = [np.bincount(row * SQUARES + column, minlength=SQUARES**2) for row in rows]
+    return float(min(1.0, len(rows) * min(stats.chisquare(each).pvalue for each in counts)))
+
+
+def _sixteenths(directions: Points) -> list[NDArray[np.int64]]:
+    """Sort directions (n, dim) into SQUARES equally likely lots, in one way or in N_AXES."""
     dim = directions.shape[1]
     if dim == 2:
-        sides = [np.arctan2(directions[:, 1], directions[:, 0]) / np.pi % 1.0]
-        edges = np.linspace(0, 1, SQUARES + 1)
-    else:
-        axes = np.random.default_rng(0).normal(size=(N_AXES, dim))
-        axes /= np.linalg.norm(axes, axis=1, keepdims=True)
-        sides = list((axes @ directions.T) ** 2)
-        edges = stats.beta.ppf(np.linspace(0, 1, SQUARES + 1), 0.5, (dim - 1) / 2)
-    return min(1.0, len(sides) * min(_of_squares(side, edges, position) for side in sides))
-
-
-def _of_squares(side: Points, edges: Points, position: Points) -> float:
-    row = np.searchsorted(edges[1:-1], side)
-    column = (position * SQUARES).astype(int)
-    counts = np.bincount(row * SQUARES + column, minlength=SQUARES**2)
-    return float(stats.chisquare(counts).pvalue)
+        angles = np.arctan2(directions[:, 1], directions[:, 0]) / np.pi % 1.0
+        return [(angles * SQUARES).astype(int) % SQUARES]
+    axes = np.random.default_rng(0).normal(size=(N_AXES, dim))
+    axes /= np.linalg.norm(axes, axis=1, keepdims=True)
+    edges = stats.beta.ppf(np.linspace(0, 1, SQUARES + 1)[1:-1], 0.5, (dim - 1) / 2)
+    return [np.searchsorted(edges, along**2) for along in axes @ directions.T]
 
 
 def t5_ends(position: Points) -> float:
@@ -106,6 +108,41 @@ def t3_reversibility(region: Region, step: Step, n: int, seed: int) -> float:
     seen = np.triu(both > 0, k=1)
     statistic = ((moves - moves.T)[seen] ** 2 / both[seen]).sum()
     return float(stats.chi2.sf(statistic, seen.sum()))
+
+
+def ball_step(region: Region, radius: float, *, segment_visible: bool) -> Step:
+    """Return the ball walk by its definition: to a uniform point of a ball, if it may, or stay."""
+
+    def step(points: Points, rng: np.random.Generator) -> Points:
+        n, dim = points.shape
+        directions = rng.normal(size=(n, dim))
+        directions /= np.linalg.norm(directions, axis=1, keepdims=True)
+        length = radius * rng.random(n) ** (1 / dim)
+        moved = points + length[:, None] * directions
+        free = region.depth(moved) > 0
+        if segment_visible:
+            free &= length < region.chords(points, directions)[1]
+        return np.where(free[:, None], moved, points)
+
+    return step
+
+
+def same_ball_step(
+    step: Step, other: Step, point: ArrayLike, radius: float, n: int, seed: int
+) -> float:
+    """Return the p-value that n steps from a point in a ball follow one law, stays included."""
+    points = np.tile(np.asarray(point, dtype=float), (n, 1))
+    rng = np.random.default_rng(seed)
+    lots = [_ball_cells((walk(points, rng) - points) / radius) for walk in (step, other)]
+    return same_law(*lots)
+
+
+def _ball_cells(moves: Points) -> NDArray[np.int64]:
+    """Sort moves in the unit ball by direction and by share of its volume; 0 for none."""
+    length = np.linalg.norm(moves, axis=1)
+    moves = moves / np.where(length > 0, length, 1.0)[:, None]
+    share = np.minimum(length ** moves.shape[1] * SQUARES, SQUARES - 1).astype(int)
+    return np.where(length > 0, 1 + _sixteenths(moves)[0] * SQUARES + share, 0)
 
 
 def same_law(cells: NDArray[np.int64], others: NDArray[np.int64]) -> float:

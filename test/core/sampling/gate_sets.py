@@ -2,7 +2,15 @@
 
 from functools import cache
 from test.laws import maps
-from test.regions import CellRegion, Points, PolytopeRegion, Region, UnionRegion
+from test.regions import (
+    BentRegion,
+    CellRegion,
+    Points,
+    PolygonRegion,
+    PolytopeRegion,
+    Region,
+    UnionRegion,
+)
 from typing import NamedTuple
 
 from hnr_planner.core import (
@@ -10,11 +18,14 @@ from hnr_planner.core import (
     BoxSpace,
     DifferenceSpace,
     GridSpace,
+    PolygonSpace,
     PolytopeSpace,
+    ShearedSpace,
     Space,
     UnionSpace,
 )
 import numpy as np
+from shapely import Polygon
 
 
 class GateSet(NamedTuple):
@@ -49,6 +60,26 @@ def hall_and_dome() -> GateSet:
     )
     space = UnionSpace(*(BoxSpace(*corner) for corner in corners), BallSpace(centre, radius))
     return GateSet(region, space, np.array([[0.95, 0.55]]))
+
+
+@cache
+def court_with_pillars() -> GateSet:
+    """Give a polygon with a notch and two holes; a point between the notch and a hole."""
+    outline = np.array([[0, 0], [4, 0], [4, 3], [2.2, 3], [2, 1.2], [1.8, 3], [0, 3.0]])
+    pillar = np.array([[0.5, 0.4], [1.4, 0.5], [0.8, 1.3]])
+    wall = np.array([[2.6, 0.8], [3.6, 0.9], [3.6, 1.0], [2.6, 0.9]])
+    rings = (outline, pillar, wall)
+    region = PolygonRegion(np.zeros(2), np.array([4.0, 3.0]), (8, 6), rings)
+    space = PolygonSpace(Polygon(outline, [pillar, wall]))
+    return GateSet(region, space, np.array([[1.6, 1.1]]))
+
+
+@cache
+def banana() -> GateSet:
+    """Give a bent box in space; a point at its inner side."""
+    low, high, bend = np.array([-1.0, -0.3, -0.2]), np.array([1.0, 0.3, 0.2]), 0.8
+    region = BentRegion(low, high + [0.0, 0.0, bend], (6, 2, 6), low, high, bend)
+    return GateSet(region, ShearedSpace(BoxSpace(low, high), bend), np.array([[0.1, 0.1, 0.15]]))
 
 
 @cache
@@ -90,6 +121,8 @@ SETS = {
     'u shape': u_shape,
     'two rooms': two_rooms,
     'hall and dome': hall_and_dome,
+    'court with pillars': court_with_pillars,
+    'banana, 3-D': banana,
     'stone, 3-D': stone_without_its_core,
     'box without balls, 10-D': box_without_balls,
 }

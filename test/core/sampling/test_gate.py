@@ -2,7 +2,10 @@
 
 from test.core.sampling.gate_sets import hall_and_dome, SETS, u_shape
 from test.sampling_gate import (
+    ALPHA,
+    ball_step,
     one_step,
+    same_ball_step,
     t1_uniform_on_the_square,
     t2_stationarity,
     t3_reversibility,
@@ -12,10 +15,10 @@ from test.sampling_gate import (
 import numpy as np
 import pytest
 
-ALPHA = 1e-8
 N_ONE_STEP = 300_000
 N_STATIONARITY = 200_000
 N_REVERSIBILITY = 200_000
+BALL = 5.0
 
 
 def right(region, points, rng):
@@ -80,6 +83,27 @@ def both_axes_in_turn(region, points, rng):
         directions = np.tile(axis, (len(points), 1))
         points = on_chord(region, points, directions, rng.random(len(points)))
     return points
+
+
+def ball_of_uniform_radius(region, points, rng):
+    """Take the textbook's ball walk, but with too many short steps."""
+    moved = points + BALL * rng.random((len(points), 1)) * any_direction(points, rng)
+    return np.where(region.depth(moved)[:, None] > 0, moved, points)
+
+
+def ball_until_free(region, points, rng):
+    """Draw again instead of staying."""
+    moved, todo = points.copy(), np.arange(len(points))
+    step = ball_step(region, BALL, segment_visible=False)
+    while len(todo):
+        moved[todo] = step(points[todo], rng)
+        todo = todo[(moved[todo] == points[todo]).all(axis=1)]
+    return moved
+
+
+def ball_through_walls(region, points, rng):
+    """Look at the end point where the segment counts."""
+    return ball_step(region, BALL, segment_visible=False)(points, rng)
 
 
 def any_direction(points, rng):
@@ -166,3 +190,17 @@ def test_what_is_wrong_about_pieces_is_caught(walk):
 def test_the_law_alone_certifies_nothing(walk):
     """These walks are wrong, and keep the uniform law forth and back."""
     assert min(of_the_law(walk, hall_and_dome().region).values()) > ALPHA
+
+
+@pytest.mark.parametrize(
+    ('walk', 'segment_visible'),
+    [(ball_of_uniform_radius, False), (ball_until_free, False), (ball_through_walls, True)],
+)
+def test_what_is_wrong_in_a_ball_is_caught(walk, segment_visible):
+    """Only drawing again breaks the uniform law: the others are found by their single steps."""
+    region, _, points = u_shape()
+    step, right = step_of(walk, region), ball_step(region, BALL, segment_visible=segment_visible)
+    assert same_ball_step(step, right, points[0], BALL, N_ONE_STEP, seed=11) < ALPHA
+    assert same_ball_step(right, right, points[0], BALL, N_ONE_STEP, seed=12) > ALPHA
+    kept = t2_stationarity(region, step, N_STATIONARITY, seed=13) > ALPHA
+    assert kept == (walk is not ball_until_free)
