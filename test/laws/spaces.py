@@ -8,13 +8,16 @@ from hnr_planner.core import (
     BoxSpace,
     DifferenceSpace,
     GridSpace,
+    OracleSpace,
     PolygonSpace,
     PolytopeSpace,
     ProductSpace,
     ShearedSpace,
     UnionSpace,
 )
+from numba import njit
 import numpy as np
+from numpy.typing import NDArray
 import shapely
 
 TURNED = (3.0, -2.0, 0.7)
@@ -64,6 +67,27 @@ def _hall_with_tables() -> DifferenceSpace:
     return DifferenceSpace(hall, PolygonSpace(shapely.MultiPolygon(tables)))
 
 
+@njit
+def _is_in_ring(x):
+    return 0.3 < np.hypot(x[0], x[1]) < 1.0
+
+
+def _way_in_saucer(x: NDArray, u: NDArray) -> float:
+    """Return how far a ray is free in a solid of revolution, |z| < 1 - x^2 - y^2."""
+    ends = []
+    for side in (1.0, -1.0):
+        # Roots of side (z + s u_z) + |xy + s u_xy|^2 - 1.
+        c = side * x[2] + x[0] ** 2 + x[1] ** 2 - 1.0
+        if c >= 0.0:
+            return 0.0
+        b = side * u[2] + 2.0 * (x[0] * u[0] + x[1] * u[1])
+        a = u[0] ** 2 + u[1] ** 2
+        root = np.sqrt(b * b - 4.0 * a * c)
+        if a > 0.0 or b > 0.0:
+            ends.append(2.0 * -c / (b + root))
+    return float(min(ends))
+
+
 def _box_without_balls() -> DifferenceSpace:
     centres = np.random.default_rng(5).uniform(0.0, 1.0, (10, 4))
     return DifferenceSpace(
@@ -110,6 +134,10 @@ SPACES: dict[str, Callable[[], object]] = {
     'polygons': _rooms,
     'sheared ball': lambda: ShearedSpace(BallSpace((1.0, -2.0, 0.5), 0.75), -1.5),
     'sheared box': lambda: ShearedSpace(BoxSpace((0.0, 0.0), (3.0, 0.5)), 0.8),
+    'oracle': lambda: OracleSpace(_is_in_ring, (-1.1, -1.2), (1.2, 1.1), resolution=2e-3),
+    'oracle of chords': lambda: OracleSpace.from_chord(
+        _way_in_saucer, (-1.0, -1.0, -1.0), (1.0, 1.0, 1.0), resolution=5e-3
+    ),
     'union of a kind': lambda: UnionSpace(
         BoxSpace((0.0, 0.0), (0.3, 1.0)),
         BoxSpace((0.1 + 0.2, 0.0), (1.0, 0.2)),

@@ -64,7 +64,7 @@ class Frontier(NamedTuple):
 @kernel
 def empty_frontier(lower, upper, clearance):
     """Return the frontier of two trees without vertices, for a space of this typical clearance."""
-    width, height = upper[0] - lower[0], upper[1] - lower[1]
+    width, height = upper[0] - lower[0], upper[1] - lower[1] if len(lower) > 1 else 0.0
     side = max(SIDE * clearance, max(width, height) / BINS_MAX)
     columns, rows = int(width / side) + 3, int(height / side) + 3
     shape = (2, rows * columns)
@@ -84,7 +84,7 @@ def empty_frontier(lower, upper, clearance):
 def bin_of(frontier, x):
     """Index of the bin that holds ``x`` (dim,)."""
     column = 1 + math.floor((x[0] - frontier.lower[0]) / frontier.side)
-    row = 1 + math.floor((x[1] - frontier.lower[1]) / frontier.side)
+    row = 1 + math.floor((x[1] - frontier.lower[1]) / frontier.side) if len(x) > 1 else 1
     return row * frontier.columns + column
 
 

@@ -29,6 +29,7 @@ from hnr_planner.core.planning.result import (
 from hnr_planner.core.planning.search import compile_search, Planner
 from hnr_planner.core.planning.simplify import compile_shorten
 from hnr_planner.core.planning.stand_off import compile_stand_off
+from hnr_planner.core.spaces.primitives import kind_of
 from hnr_planner.core.spaces.space import Space
 import numpy as np
 from numpy.typing import ArrayLike
@@ -191,13 +192,13 @@ def _message(best: Attempt, iterations: int, began: float) -> str:
     return f'{best.status.value} ({iterations} transitions, {seconds:.3g} s)'
 
 
-_compiled: set[tuple[type, type[Planner], bool, bool]] = set()
+_compiled: set[tuple[tuple[Any, ...], type[Planner], bool, bool]] = set()
 
 
 def _compile(request: Request, n_paths: int) -> None:
     """Compile, once for each kind of space and planner, before any clock runs."""
     space = request.space
-    kinds = type(space.data), type(request.planner), n_paths > 1, request.clearance > 0.0
+    kinds = kind_of(space.data), type(request.planner), n_paths > 1, request.clearance > 0.0
     if kinds in _compiled:
         return
     compile_search(request.planner, request.problem)

@@ -3,8 +3,10 @@
 from hnr_planner.core.spaces import grid_curves  # noqa: F401 - tells curves about grids
 from hnr_planner.core.spaces.ball import BallSpace
 from hnr_planner.core.spaces.box import BoxSpace
+from hnr_planner.core.spaces.callbacks import OracleError
 from hnr_planner.core.spaces.difference import DifferenceSpace
 from hnr_planner.core.spaces.grid import GridSpace
+from hnr_planner.core.spaces.oracle import OracleSpace
 from hnr_planner.core.spaces.polygon import PolygonSpace
 from hnr_planner.core.spaces.polytope import PolytopeSpace
 from hnr_planner.core.spaces.product import ProductSpace
@@ -18,6 +20,8 @@ __all__ = [
     'Chord',
     'DifferenceSpace',
     'GridSpace',
+    'OracleError',
+    'OracleSpace',
     'PolygonSpace',
     'PolytopeSpace',
     'ProductSpace',

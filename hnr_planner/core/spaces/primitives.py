@@ -144,6 +144,11 @@ def register(data_type: type, primitives: Primitives) -> None:
     _PRIMITIVES[data_type] = primitives
 
 
+def kind_of(space: Any) -> tuple[Any, ...]:
+    """Return what compiled code is made for: the type of a compiled space and of its parts."""
+    return (type(space), *(kind_of(part) for part in space if type(part) in _PRIMITIVES))
+
+
 @kernel
 def are_free(space, points):
     """Say which of ``points`` (k, dim) are free: (k,) bool."""

@@ -59,7 +59,7 @@ class Roadmap:
         Parameters
         ----------
         space : Space
-            Any space, in one part or more, even without free points.
+            Any space of the plane, in one part or more, even without free points.
         seed : int, optional
             Equal seeds give equal roadmaps. Fresh when left out.
         cancel : threading.Event, optional
@@ -70,9 +70,10 @@ class Roadmap:
         Cancelled
             When ``cancel`` was set.
         RequestError
-            When the seed is no whole number of at least 0.
+            When the space is not of the plane, or the seed no whole number of at least 0.
 
         """
+        _check_plane(space)
         seed = check_seed(seed)
         _compile(space)
         return cls(seed, learn(nothing_known(space), space, N_DRAWS, seed, cancel))
@@ -172,6 +173,15 @@ class Answer:
 
     def advance(self, n_iterations: int) -> None:
         """Do nothing: there is nothing left to do."""
+
+
+def _check_plane(space: Space) -> None:
+    """Refuse spaces in which shortest paths bend anywhere along edges, not at a few corners."""
+    if space.dim != 2:
+        raise RequestError(
+            f'a roadmap is of the corners of a plane: space must have dimension 2, this '
+            f'{type(space).__name__} has {space.dim}'
+        )
 
 
 def _compile(space: Space) -> None:

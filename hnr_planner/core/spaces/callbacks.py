@@ -1,0 +1,114 @@
+"""
+Functions of a user's that compiled code calls: by address, so that they are data.
+
+A function compiled by numba costs what a call costs. One in Python takes the interpreter's lock
+for each answer, a few microseconds; what it raises ends the kernel with an ``OracleError``. Either
+way kernels are compiled, and kept on disk, once for all functions.
+"""
+
+from collections.abc import Callable
+import ctypes
+import threading
+from typing import Any
+
+from hnr_planner.core.errors import HnrError
+from numba import carray, cfunc, types
+from numba.core import cgutils
+from numba.core.dispatcher import Dispatcher
+from numba.extending import intrinsic, overload
+import numpy as np
+
+#: What a function gets: numbers, how many, and room for its answer. What it returns: 0, or FAILED.
+_C_TYPE = ctypes.CFUNCTYPE(ctypes.c_int32, ctypes.c_void_p, ctypes.c_int64, ctypes.c_void_p)
+_NATIVE = types.int32(types.CPointer(types.float64), types.int64, types.CPointer(types.float64))
+_FLOAT, FAILED = 8, -1
+
+_raised = threading.local()
+
+
+class OracleError(HnrError):
+    """A user's function raised: the cause says what."""
+
+    def __init__(self) -> None:
+        self.__cause__ = getattr(_raised, 'error', None)
+        super().__init__(f'the function of an OracleSpace raised {self.__cause__!r}')
+
+
+def callback(function: Callable[..., Any], n_arrays: int) -> Any:
+    """
+    Return a function as one that ``ask`` calls: keep it for as long as its ``address`` is used.
+
+    Parameters
+    ----------
+    function : callable
+        From so many arrays (dim,) to a number, or a truth value. Compiled by numba or not.
+    n_arrays : int
+        1 or 2.
+
+    """
+    if isinstance(function, Dispatcher):
+        return _native(function, n_arrays)
+    return _python(function, n_arrays)
+
+
+def address(called_back: Any) -> int:
+    """Return the address of what ``callback`` returned."""
+    if isinstance(called_back, _C_TYPE):
+        return int(ctypes.cast(called_back, ctypes.c_void_p).value or 0)
+    return int(called_back.address)
+
+
+def _python(function: Callable[..., Any], n_arrays: int) -> Any:
+    def answer(numbers: int, count: int, result: int) -> int:
+        try:
+            # A copy, which the function may keep, and which it cannot change.
+            all_numbers = np.frombuffer(ctypes.string_at(numbers, _FLOAT * count))
+            arrays = all_numbers.reshape(n_arrays, -1)
+            ctypes.c_double.from_address(result).value = float(function(*arrays))
+        except BaseException as error:
+            _raised.error = error
+            return FAILED
+        return 0
+
+    return _C_TYPE(answer)
+
+
+def _native(function: Dispatcher, n_arrays: int) -> Any:
+    if n_arrays == 1:
+
+        def answer(numbers, count, result):
+            result[0] = function(carray(numbers, (count,)))
+            return 0
+    else:
+
+        def answer(numbers, count, result):
+            arrays = carray(numbers, (2, count // 2))
+            result[0] = function(arrays[0], arrays[1])
+            return 0
+
+    return cfunc(_NATIVE)(answer)
+
+
+def ask(at: int, numbers: Any, result: Any) -> int:
+    """Call a function by its address: its answer is in ``result`` (1,). Return 0, or FAILED."""
+    return _C_TYPE(at)(numbers.ctypes.data, len(numbers), result.ctypes.data)
+
+
+@intrinsic
+def _call(_typing_context: Any, at: Any, numbers: Any, count: Any, result: Any) -> Any:
+    """Call the function at an address."""
+
+    def generate(_context: Any, builder: Any, _signature: Any, arguments: Any) -> Any:
+        ir: Any = cgutils.ir
+        word = ir.IntType(64)
+        kind = ir.FunctionType(ir.IntType(32), [word, word, word])
+        return builder.call(builder.inttoptr(arguments[0], kind.as_pointer()), list(arguments[1:]))
+
+    return types.int32(types.int64, types.uintp, types.int64, types.uintp), generate
+
+
+@overload(ask)
+def _compiled_ask(at, numbers, result):
+    return lambda at, numbers, result: _call(  # type: ignore[call-arg]
+        at, numbers.ctypes.data, len(numbers), result.ctypes.data
+    )
