@@ -32,11 +32,11 @@ from hnr_planner.core.theory.conductance import (
     Cut,
     cut_conductance,
     Estimate,
-    relaxation_time,
 )
 from hnr_planner.core.theory.cross_ratio import cross_ratio_distance, hilbert_distance
 from hnr_planner.core.theory.curvature import Curvature, curve_curvature, slice_curvature
 from hnr_planner.core.theory.density import log_ball_volume, transition_density
+from hnr_planner.core.theory.embedding import disc_image, image_boundary, shear_stretch
 from hnr_planner.core.theory.links import annulus_sector_links, link_diameter, LinkBounds
 from hnr_planner.core.theory.path_length import (
     expected_transitions,
@@ -71,9 +71,11 @@ __all__ = [
     'cross_ratio_distance',
     'curve_curvature',
     'cut_conductance',
+    'disc_image',
     'even_chain_distance',
     'expected_transitions',
     'hilbert_distance',
+    'image_boundary',
     'link_diameter',
     'lipschitz_factor',
     'log_ball_volume',
@@ -85,7 +87,7 @@ __all__ = [
     'polygon_area',
     'printed_conductance',
     'ratio_inequality',
-    'relaxation_time',
+    'shear_stretch',
     'slice_curvature',
     'step_length',
     'step_mean',
