@@ -151,7 +151,7 @@ def test_12_walks_agree_and_are_warm_after_one_step_more(dim):
 
 
 def test_lemma_8_holds_with_room():
-    """300 000 pairs in discs and balls, c and d mostly near the ends of the chord."""
+    """450 000 pairs in discs and balls, c and d mostly near the ends of the chord."""
     rng = np.random.default_rng(2)
     for dim in (2, 3, 10):
         for epsilon in (0.02, 0.1, 0.5):
