@@ -32,11 +32,11 @@ from hnr_planner.core.theory.conductance import (
     Cut,
     cut_conductance,
     Estimate,
-    relaxation_time,
 )
 from hnr_planner.core.theory.cross_ratio import cross_ratio_distance, hilbert_distance
 from hnr_planner.core.theory.curvature import Curvature, curve_curvature, slice_curvature
 from hnr_planner.core.theory.density import log_ball_volume, transition_density
+from hnr_planner.core.theory.embedding import ball_image, image_boundary
 from hnr_planner.core.theory.links import annulus_sector_links, link_diameter, LinkBounds
 from hnr_planner.core.theory.path_length import (
     expected_transitions,
@@ -63,6 +63,7 @@ __all__ = [
     'LinkBounds',
     'annulus_sector_links',
     'ball_boundary_ratio',
+    'ball_image',
     'best_cut',
     'boundary_ratio',
     'cell_flow',
@@ -74,6 +75,7 @@ __all__ = [
     'even_chain_distance',
     'expected_transitions',
     'hilbert_distance',
+    'image_boundary',
     'link_diameter',
     'lipschitz_factor',
     'log_ball_volume',
@@ -85,7 +87,6 @@ __all__ = [
     'polygon_area',
     'printed_conductance',
     'ratio_inequality',
-    'relaxation_time',
     'slice_curvature',
     'step_length',
     'step_mean',

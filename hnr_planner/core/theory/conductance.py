@@ -49,6 +49,17 @@ class CellFlow(NamedTuple):
         """Probability (m, m) of a step to each cell from a uniform point of each."""
         return self.flow / self.area[:, None]
 
+    @property
+    def relaxation_time(self) -> float:
+        """
+        Steps that the slowest deviation from uniformity takes to fade: 1 / spectral gap.
+
+        That of the chain that forgets its place within the cell at every step: never more than
+        the true one, and nearer to it the finer the cells (its kernel is a projection of the true
+        one).
+        """
+        return 1.0 / (1.0 - _slowest(self)[0])
+
 
 class Cut(NamedTuple):
     """
@@ -116,16 +127,6 @@ def cell_flow(space: Space, shape: tuple[int, int], n_lines: int = 1 << 20) -> C
     return CellFlow(
         area[used] * weight, flow[np.ix_(used, used)] * weight, lower + centres[used] * side
     )
-
-
-def relaxation_time(flow: CellFlow) -> float:
-    """
-    Return how many steps the slowest deviation from uniformity takes to fade: 1 / spectral gap.
-
-    That of the chain that forgets its place within the cell at every step: never more than the
-    true one, and nearer to it the finer the cells (its kernel is a projection of the true one).
-    """
-    return 1.0 / (1.0 - _slowest(flow)[0])
 
 
 def best_cut(flow: CellFlow) -> Cut:

@@ -4,8 +4,10 @@ import itertools
 from typing import NamedTuple
 
 from hnr_planner.core.checks import Floats
-from hnr_planner.core.spaces import BoxSpace, GridSpace, PolytopeSpace, Space
+from hnr_planner.core.spaces import BoxSpace, GridSpace, PolygonSpace, PolytopeSpace, Space
 import numpy as np
+from shapely import get_parts
+from shapely.geometry.polygon import orient
 
 #: How far beside a corner a path may turn, as a part of the bounds' diagonal.
 BESIDE = 1e-7
@@ -29,10 +31,12 @@ class Corners(NamedTuple):
 
 
 def corners(space: Space) -> Corners:
-    """Return the corners of a grid, box or polytope in the plane; none for other spaces."""
+    """Return the corners of a grid, polygon, box or polytope; none for other spaces."""
     none = np.empty((0, 2))
     if isinstance(space, GridSpace):
         return _grid_corners(space)
+    if isinstance(space, PolygonSpace):
+        return _polygon_corners(space)
     if isinstance(space, BoxSpace) and space.dim == 2:
         return Corners(np.array(list(itertools.product(*zip(*space.bounds, strict=True)))), none)
     if isinstance(space, PolytopeSpace) and space.dim == 2:
@@ -54,6 +58,26 @@ def _grid_corners(space: GridSpace) -> Corners:
     lower, upper = space.kernel_bounds
     beside = at[reflex] + away * (BESIDE * float(np.linalg.norm(upper - lower)))
     return Corners(space.from_kernel(at), space.from_kernel(beside))
+
+
+def _polygon_corners(space: PolygonSpace) -> Corners:
+    """Vertices of the rings, and points beside those at which a ring turns to the right."""
+    lower, upper = space.bounds
+    beside = BESIDE * float(np.linalg.norm(upper - lower))
+    points, turns = [], []
+    for polygon in get_parts(space.polygon):
+        inside_on_the_left = orient(polygon)
+        for ring in (inside_on_the_left.exterior, *inside_on_the_left.interiors):
+            at = np.asarray(ring.coords)[:-1, :2]
+            ahead = np.roll(at, -1, axis=0) - at
+            ahead /= np.linalg.norm(ahead, axis=1, keepdims=True)
+            behind = np.roll(ahead, 1, axis=0)
+            right = behind[:, 0] * ahead[:, 1] - behind[:, 1] * ahead[:, 0] < 0.0
+            away = (behind - ahead)[right]
+            away /= np.linalg.norm(away, axis=1, keepdims=True)
+            points.append(at)
+            turns.append(at[right] + beside * away)
+    return Corners(np.concatenate(points), np.concatenate(turns))
 
 
 def _polytope_corners(normals: Floats, offsets: Floats) -> Floats:

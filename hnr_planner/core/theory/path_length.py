@@ -13,6 +13,9 @@ from hnr_planner.core.theory.conductance import CellFlow
 import numpy as np
 from numpy.typing import NDArray
 
+#: A walk that has not mixed after so many steps is taken for one that never will.
+STEPS_MAX = 100_000
+
 
 def mixing_time(flow: CellFlow, start: int, epsilon: float = 0.25) -> int:
     """Count the steps from a cell until the law over cells is within ``epsilon`` of uniform."""
@@ -23,8 +26,8 @@ def mixing_time(flow: CellFlow, start: int, epsilon: float = 0.25) -> int:
     while 0.5 * np.abs(law - stationary).sum() > epsilon:
         law = law @ kernel
         steps += 1
-        if steps > 1_000_000:
-            raise RequestError('not mixed after 1000000 steps: are the cells connected?')
+        if steps > STEPS_MAX:
+            raise RequestError(f'not mixed after {STEPS_MAX} steps: are the cells connected?')
     return steps
 
 

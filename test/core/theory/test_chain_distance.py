@@ -3,10 +3,11 @@
 import math
 from test.core.theory.sets import DISC, ELL, PLUS, SQUARE, YOU
 
-from hnr_planner.core import BoxSpace, RequestError
+from hnr_planner.core import BoxSpace, PolygonSpace, RequestError
 from hnr_planner.core.theory import chain_distance, cross_ratio_distance, even_chain_distance
 import numpy as np
 import pytest
+from shapely import Polygon
 
 
 def test_even_parts_by_hand():
@@ -40,6 +41,17 @@ def test_round_the_corner_of_an_ell():
     assert lower == pytest.approx(4)
     assert upper == pytest.approx(4, rel=1e-4)
     assert chain_distance(ELL, (0.5, 1.5), (1.5, 0.5), 1).upper == math.inf
+
+
+def test_a_polygon_is_the_same_as_its_grid():
+    """The same L as a polygon, whose rings run either way."""
+    ring = [(0, 0), (0, 2), (1, 2), (1, 1), (2, 1), (2, 0)]
+    for corners in (ring, ring[::-1]):
+        ell = PolygonSpace(Polygon(corners))
+        of_polygon = chain_distance(ell, (0.5, 1.9), (1.9, 0.5))
+        of_grid = chain_distance(ELL, (0.5, 1.9), (1.9, 0.5))
+        assert of_polygon.lower == pytest.approx(of_grid.lower, rel=1e-6)
+        assert of_polygon.upper == pytest.approx(of_grid.upper, rel=1e-3)
 
 
 @pytest.mark.parametrize('n_links', [3, 6, math.inf])

@@ -8,7 +8,6 @@ from hnr_planner.core.theory import (
     best_cut,
     cell_flow,
     cut_conductance,
-    relaxation_time,
     step_probability,
 )
 import numpy as np
@@ -58,7 +57,7 @@ def test_two_rooms_with_a_door(door):
     assert len(set(np.sign(flow.centre[cut.inside, 0] - 1))) == 1
     assert SMALL_DOOR == pytest.approx(0.27565, abs=1e-5)
     assert cut.conductance == pytest.approx(SMALL_DOOR * door, rel=0.012)
-    relaxation = relaxation_time(flow)
+    relaxation = flow.relaxation_time
     assert 1 / (2 * cut.conductance) <= relaxation <= 2 / cut.conductance**2
     assert relaxation == pytest.approx({0.05: 37.6, 0.2: 10.35}[door], rel=0.01)
 
@@ -66,7 +65,7 @@ def test_two_rooms_with_a_door(door):
 def test_finer_cells_forget_less():
     """The kernel of cells within cells is a projection, so the relaxation time grows with them."""
     rooms = two_rooms(0.2)
-    times = [relaxation_time(cell_flow(rooms, (m, 2 * m), N_LINES)) for m in (2, 4, 8)]
+    times = [cell_flow(rooms, (m, 2 * m), N_LINES).relaxation_time for m in (2, 4, 8)]
     assert times == sorted(times)
     assert times[-1] / times[0] > 1.05
 

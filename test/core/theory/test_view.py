@@ -4,11 +4,12 @@ import math
 from test.core.theory.sets import DISC, ELL, SQUARE, YOU
 from test.laws.maps import TWO_ROOMS
 
-from hnr_planner.core import BoxSpace, DifferenceSpace, GridSpace, RequestError
+from hnr_planner.core import BoxSpace, DifferenceSpace, GridSpace, PolygonSpace, RequestError
 from hnr_planner.core.theory import polygon_area, view
 from matplotlib.path import Path
 import numpy as np
 import pytest
+from shapely import box
 
 HALL = GridSpace.from_blocked(TWO_ROOMS, 0.2, (3.0, 2.0, 0.4))
 
@@ -50,6 +51,17 @@ def test_it_holds_the_points_that_are_seen_and_no_others(space, u):
     seen = [space.is_motion_valid(u, point) for point in points]
     assert inside.tolist() == seen
     assert 0 < inside.sum() < 3000 or space is SQUARE
+
+
+def test_a_polygon_with_a_hole():
+    """A square room with a square pillar: what lies behind the pillar is a trapezium."""
+    room = PolygonSpace(box(-2, -2, 2, 2).difference(box(-1, -1, 1, 1)))
+    # From (-1.5, 0) the pillar hides x > -1 between its near corners at (-1, +-1): by x = -.5 the
+    # lines of slope 2 leave the room at y = 2.
+    hidden_or_pillar = 3 * 4 - (2 * 0.5 * 1 / 2)
+    assert polygon_area(view(room, (-1.5, 0))) == pytest.approx(16 - hidden_or_pillar, rel=1e-9)
+    grid = GridSpace.from_blocked(np.pad(np.ones((2, 2), dtype=bool), 1), 1.0, (-2.0, -2.0, 0.0))
+    assert view(grid, (-1.5, 0.3)) == pytest.approx(view(room, (-1.5, 0.3)), abs=1e-9)
 
 
 def test_a_smooth_boundary_is_met_by_a_polygon():
