@@ -29,7 +29,7 @@ help:
 	@echo 'make bench                 side by side with OMPL and grid search, a quarter of an hour'
 	@echo 'make bench QUICK=1         the same in a minute or two, for a look'
 	@echo 'make figures               the experiments of docs/ again, about an hour'
-	@echo 'make figures RUNS=50       the same in a tenth of the time, for a look'
+	@echo 'make figures RUNS=5        the same in a minute or two, for a look'
 	@echo 'make format                put the sources into shape'
 	@echo 'make clean                 remove .venv and all that was built'
 	@echo
@@ -100,12 +100,9 @@ bench: install
 	done
 	$(VENV) -m benchmarks $(if $(QUICK),--quick)
 
-#: Runs of each case: 500 are those of docs/, 50 are for a look.
-RUNS := 500
-
 .PHONY: figures
 figures: install
-	$(VENV) -m hnr_planner experiment --runs $(RUNS) --out docs/figures
+	$(VENV) -m hnr_planner experiment $(if $(RUNS),--runs $(RUNS)) --out docs/figures
 
 .PHONY: format
 format: install

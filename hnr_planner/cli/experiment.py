@@ -11,11 +11,11 @@ from hnr_planner.cli.arguments import count
 NAMES = ('spiral', 'clouds', 'safety')  # those of the experiments, here so that --help is fast
 EPILOG = """\
 Rows are kept as they come: a run that was broken off goes on where it was, and a longer one
-continues a shorter one. 50 runs are for a look, 500 are those of docs/.
+continues a shorter one. A tenth of the runs of docs/ is good for a look.
 
 examples:
-  python -m hnr_planner experiment spiral --show
-  python -m hnr_planner experiment --runs 500 --out figures
+  python -m hnr_planner experiment spiral --runs 50 --show
+  python -m hnr_planner experiment --out figures
 
 Exit code 0: done. 2: the arguments are not usable, or the folder holds results of something else.
 """
@@ -38,9 +38,8 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
     parser.add_argument(
         '--runs',
         type=count,
-        default=50,
         metavar='N',
-        help='runs of each case, with the seeds 0 to N - 1; default 50',
+        help='runs of each case, with the seeds 0 to N - 1; default those of docs/',
     )
     parser.add_argument(
         '--out',
@@ -71,7 +70,8 @@ def _conduct(name: str, arguments: argparse.Namespace) -> None:
 
     experiment = load(check_choice('experiment', name, NAMES))
     jobs = arguments.jobs or -1
-    conduct(experiment, arguments.runs, arguments.out, n_jobs=jobs, fresh=arguments.fresh)
+    runs = arguments.runs or experiment.runs
+    conduct(experiment, runs, arguments.out, n_jobs=jobs, fresh=arguments.fresh)
     figure = arguments.out / f'{name}.svg'
     print(figure.with_suffix('.md').read_text(encoding='utf-8'))
     print(f'figure      {figure}')

@@ -238,6 +238,7 @@ def tables(results: Results) -> str:
 EXPERIMENT = Experiment(
     name='clouds',
     about='The samples of a search through the spiral: how soon, how evenly, how near to walls.',
+    runs=500,
     cases=cases,
     run=run,
     figure=figure,

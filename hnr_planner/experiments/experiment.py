@@ -19,6 +19,8 @@ class Experiment:
         Name of its module, its files and its command.
     about : str
         What it measures, in one line.
+    runs : int
+        Runs of every case that ``docs/`` has.
     cases : callable
         Returns the cases: NamedTuples of texts and numbers, all of one type. Their fields are
         columns of the results.
@@ -34,6 +36,7 @@ class Experiment:
 
     name: str
     about: str
+    runs: int
     cases: Callable[[], Sequence[Any]]
     run: Callable[[Any, int], Mapping[str, float]]
     figure: Callable[[Results], Figure]

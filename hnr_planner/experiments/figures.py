@@ -145,5 +145,5 @@ def save(figure: Figure, file: Path) -> None:
     """Write a figure, to the byte the same for the same results."""
     with rc_context({'svg.hashsalt': 'hnr_planner'}):
         figure.savefig(
-            file, dpi=110, facecolor='white', metadata={'Date': None}, bbox_inches='tight'
+            file, dpi=90, facecolor='white', metadata={'Date': None}, bbox_inches='tight'
         )

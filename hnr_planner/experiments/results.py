@@ -37,6 +37,8 @@ class Mean(NamedTuple):
 
     def __str__(self) -> str:
         """Return both, rounded to what the interval lets one say."""
+        if math.isnan(self.value):
+            return '-'
         if not math.isfinite(self.half) or self.half == 0.0:
             return f'{self.value:,.4g}'
         digits = max(1 - math.floor(math.log10(self.half)), 0)

@@ -206,6 +206,7 @@ def _words(algorithm: str, clearance: float) -> str:
 EXPERIMENT = Experiment(
     name='safety',
     about='Distance to obstacles along the paths of different planners.',
+    runs=100,
     cases=cases,
     run=run,
     figure=figure,

@@ -166,6 +166,7 @@ def _table(results: Results, column: str, words: str) -> str:
 EXPERIMENT = Experiment(
     name='spiral',
     about='Transitions through a spiral corridor, by the width of its arms.',
+    runs=500,
     cases=cases,
     run=run,
     figure=figure,

@@ -40,11 +40,16 @@ def run(command: list[str], folder: Path) -> str:
     return done.stdout
 
 
-@pytest.mark.parametrize('block', blocks('bash'), ids=['plan', 'sample'])
+@pytest.mark.parametrize('block', blocks('bash'), ids=['plan', 'sample', 'experiment'])
 def test_commands_run_and_write_their_files(block: str, clone: Path) -> None:
-    assert 'SOLVED' in (out := run(['bash', '-ec', block], clone)) or 'points' in out
+    out = run(['bash', '-ec', block], clone)
+    assert 'SOLVED' in out or 'points' in out or 'figure ' in out
     for name in re.findall(r'--plot (\S+)', block):
         check_picture(clone / name)
+    for name in re.findall(r'--html (\S+)', block):
+        assert (clone / name).read_text().startswith('<!DOCTYPE html>')
+    for folder in re.findall(r'--out (\S+)', block):
+        assert {file.suffix for file in (clone / folder).iterdir()} >= {'.csv', '.svg', '.md'}
     for name in re.findall(r'--csv (\S+)', block):
         assert len((clone / name).read_text().splitlines()) == 5001
 

@@ -8,6 +8,8 @@ from hnr_planner.experiments.conduct import conduct
 import numpy as np
 import pytest
 
+ROOT = Path(__file__).resolve().parents[2]
+
 
 @pytest.mark.parametrize('name', NAMES)
 def test_every_experiment_runs_and_repeats_itself(
@@ -25,6 +27,15 @@ def test_every_experiment_runs_and_repeats_itself(
             dict(again), rel=0.0, abs=0.0, nan_ok=True
         )
     assert (tmp_path / f'{name}.svg').stat().st_size < 800_000
+
+
+@pytest.mark.parametrize('name', NAMES)
+def test_every_experiment_has_its_page_and_figure(name: str) -> None:
+    page = (ROOT / 'docs' / f'{name}.md').read_text()
+    assert f'figures/{name}.svg' in page
+    assert f'python -m hnr_planner experiment {name}' in page
+    assert f'({name}.md)' in (ROOT / 'docs' / 'README.md').read_text()
+    assert (ROOT / 'docs' / 'figures' / f'{name}.svg').stat().st_size < 600_000
 
 
 # -- safety
