@@ -71,9 +71,10 @@ $(STAMP): setup.py
 demo: install
 	$(VENV) -m hnr_planner demo $(if $(MAP),--map '$(MAP)') $(if $(KEEP),--keep)
 
+# A worker for each core, which takes whole files: the tests of a file share a node, in their order.
 .PHONY: test
 test: install
-	$(VENV) -m pytest $(ARGS)
+	$(VENV) -m pytest --numprocesses logical --maxprocesses 4 --dist loadfile $(ARGS)
 
 .PHONY: soak
 soak: install

@@ -44,6 +44,7 @@ setup(
             'colcon-common-extensions>=0.3',
             'hypothesis>=6.98',
             'pytest>=7.4',
+            'pytest-xdist>=3.4',
             'selenium>=4.18',
             'setuptools>=64,<80',  # later ones lack what `colcon build --symlink-install` calls
         ],

@@ -167,7 +167,7 @@ def test_requirements_of_the_tests_are_what_they_import_besides(
     imported = {name for name in libraries(*ROOT.glob('test/**/*.py')) if not is_ros(name)}
     imported -= libraries(*map(source, MODULES)) - OPTIONAL
     imported -= {'benchmarks', 'distutils', 'test'}
-    tools = {'colcon-common-extensions', 'setuptools'}
+    tools = {'colcon-common-extensions', 'pytest-xdist', 'setuptools'}
     on_pypi = names(distribution.extras_require['test'])
     in_rosdep = {element.text for element in manifest.iter('test_depend')}
     assert on_pypi == imported | tools

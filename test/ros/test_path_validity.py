@@ -41,8 +41,8 @@ def test_path_in_another_frame_is_blocked_from_its_first_pose() -> None:
 def test_long_path_is_held_against_a_map_at_once() -> None:
     newest = store(rooms()).newest()
     path = np.tile([(0.5, 0.5), (0.5, 1.5)], (1_000_000, 1))
-    began = time.monotonic()
+    began = time.thread_time()  # that of this thread alone: other work does not count
     assert first_blocked_pose(path, 'map', newest) is None
     path[-1] = GOAL
     assert first_blocked_pose(path, 'map', newest) is not None
-    assert time.monotonic() - began < SLACK
+    assert time.thread_time() - began < SLACK
