@@ -37,7 +37,12 @@ from hnr_planner.core.theory.cross_ratio import cross_ratio_distance, hilbert_di
 from hnr_planner.core.theory.curvature import Curvature, curve_curvature, slice_curvature
 from hnr_planner.core.theory.density import log_ball_volume, transition_density
 from hnr_planner.core.theory.embedding import ball_image, image_boundary
-from hnr_planner.core.theory.links import annulus_sector_links, link_diameter, LinkBounds
+from hnr_planner.core.theory.links import (
+    annulus_sector_links,
+    link_diameter,
+    LinkBounds,
+    polygon_link_diameter,
+)
 from hnr_planner.core.theory.path_length import (
     expected_transitions,
     mixing_estimate,
@@ -85,6 +90,7 @@ __all__ = [
     'mixing_estimate',
     'mixing_time',
     'polygon_area',
+    'polygon_link_diameter',
     'printed_conductance',
     'ratio_inequality',
     'slice_curvature',

@@ -137,9 +137,7 @@ def test_mixing_follows_from_conductance():
     assert mixing_bound(1e-12, 4.0, 0.01) == pytest.approx(2e24 * math.log(200), rel=1e-3)
 
 
-def test_the_ball_behind_the_bound_is_met_at_every_size():
-    """R of Definition 3 in the formula and in balls of other radii."""
-    assert BallSpace(np.zeros(3), 2.0).radius == 2.0
+def test_the_factor_of_lemma_10_does_not_depend_on_the_size():
     for radius in (0.3, 2.0):
         image = BallImage(3, radius, 2 * radius)
         assert image.ratio_bound == pytest.approx(BallImage.unit_ball(3).ratio_bound)

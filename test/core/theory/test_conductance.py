@@ -99,8 +99,8 @@ def test_walks_change_sides_as_the_flow_says(n_steps):
     ids=['rooms', 'ball', 'cube'],
 )
 def test_random_lines_give_the_cut_in_any_dimension(space, side):
-    """200 000 lines against 200 000 steps from the smaller side, at 6.5 standard errors."""
-    cut = cut_conductance(space, side, 200_000, 2)
+    """100 000 lines against 200 000 steps from the smaller side, at 6.5 standard errors."""
+    cut = cut_conductance(space, side, 100_000, 2)
     begin = scattered(space, 200_000, seed=3)
     end = walked(space, begin, seed=4)
     inside = side.contains(begin)

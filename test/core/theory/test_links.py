@@ -4,11 +4,16 @@ import math
 from test.core.theory.sets import ELL, PLUS, YOU
 from test.laws.maps import CHECKERBOARD, CORRIDOR, drawn, ONE_CELL, SPIRAL, TWO_ROOMS
 
-from hnr_planner.core import GridSpace, RequestError
-from hnr_planner.core.theory import annulus_sector_links, link_diameter
+from hnr_planner.core import GridSpace, PolygonSpace, RequestError
+from hnr_planner.core.theory import (
+    annulus_sector_links,
+    link_diameter,
+    polygon_link_diameter,
+)
 import numpy as np
 import pytest
 from scipy.sparse.csgraph import dijkstra
+from shapely import box, MultiPolygon, Polygon
 
 HALL = GridSpace.from_blocked(TWO_ROOMS)
 
@@ -51,6 +56,32 @@ def test_chains_over_random_points_are_no_shorter():
     assert (
         link_diameter(HALL).lower <= links[np.isfinite(links)].max() <= link_diameter(HALL).upper
     )
+
+
+@pytest.mark.parametrize(
+    ('polygon', 'links'),
+    [
+        (Polygon([(0, 0), (3, 0), (1, 2)]), 1),
+        (Polygon([(0, 0), (2, 0), (2, 1), (1, 1), (1, 2), (0, 2)]), 2),
+        (box(0, 0, 7, 9).difference(box(2, 3, 5, 9)), 3),
+        # The middles of two opposite walls of a room with a pillar do not meet at a third wall.
+        (box(-2, -2, 2, 2).difference(box(-1, -1, 1, 1)), 3),
+        # Each of two rooms that touch in a corner by itself.
+        (MultiPolygon([box(0, 0, 1, 1), box(1, 1, 2, 2)]), 1),
+    ],
+    ids=['triangle', 'ell', 'you', 'pillar', 'apart'],
+)
+def test_of_polygons_it_is_what_one_counts(polygon, links):
+    assert polygon_link_diameter(PolygonSpace(polygon), 16) == (links, links)
+
+
+@pytest.mark.parametrize('inner', [1.0, 1.5])
+def test_a_sector_lies_between_the_bounds_of_its_polygon(inner):
+    angle = np.linspace(0, math.pi, 60)
+    arc = np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    sector = PolygonSpace(Polygon(np.concatenate([2 * arc, inner * arc[::-1]])))
+    lower, upper = polygon_link_diameter(sector, 16)
+    assert lower <= annulus_sector_links(inner, 2, math.pi) <= upper <= lower + 1
 
 
 def test_a_sector_of_an_annulus():
