@@ -11,23 +11,23 @@ from hnr_planner.core.planning.rrt import RRT
 from hnr_planner.core.planning.rrt_connect import RRTConnect
 from hnr_planner.core.planning.search import Planner
 
-#: What ``auto`` stands for.
-BEST = 'hit_and_run_connect'
-
-_KINDS = (HitAndRun, RRT, HitAndRunConnect, RRTConnect)
-_PLANNERS: dict[str, type[Any]] = {kind.name: kind for kind in _KINDS}
-
-#: Names that ``plan`` takes.
-ALGORITHMS = ('auto', *_PLANNERS)
-
-_DEFAULTS: dict[str, Planner] = {
-    name: _PLANNERS[BEST if name == 'auto' else name]() for name in ALGORITHMS
+_PLANNERS = (HitAndRun, RRT, HitAndRunConnect, RRTConnect)
+_KINDS: dict[str, type[Any]] = {
+    'auto': HitAndRunConnect,
+    **{planner.name: planner for planner in _PLANNERS},
 }
 
+#: Names that ``plan`` takes.
+ALGORITHMS = tuple(_KINDS)
 
-def make_planner(algorithm: str | Planner, settings: dict[str, Any]) -> Planner:
+
+def make_planner(
+    algorithm: str | Planner, settings: dict[str, Any], kinds: dict[str, type[Any]] = _KINDS
+) -> Planner:
     """
     Return the planner that ``algorithm`` means, built with ``settings`` where it is a name.
+
+    The names are those of ``kinds``.
 
     Raises
     ------
@@ -41,10 +41,7 @@ def make_planner(algorithm: str | Planner, settings: dict[str, Any]) -> Planner:
         if settings:
             raise RequestError(f'settings {sorted(settings)} go with the name of a planner only')
         return algorithm
-    name = check_choice('algorithm', algorithm, ALGORITHMS)
-    if not settings:
-        return _DEFAULTS[name]
-    kind = _PLANNERS[BEST if name == 'auto' else name]
+    kind = kinds[check_choice('algorithm', algorithm, tuple(kinds))]
     known = [field.name for field in fields(kind)]
     for setting in settings:
         if setting not in known:

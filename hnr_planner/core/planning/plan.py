@@ -12,6 +12,7 @@ from typing import Any
 
 from hnr_planner.core.cancellation import Event
 from hnr_planner.core.checks import check_count, check_number
+from hnr_planner.core.errors import RequestError
 from hnr_planner.core.lengths import path_length
 from hnr_planner.core.planning.alternatives import (
     check_alternatives,
@@ -19,6 +20,7 @@ from hnr_planner.core.planning.alternatives import (
     with_alternatives,
 )
 from hnr_planner.core.planning.attempts import Attempt, attempt, improve, with_clearance
+from hnr_planner.core.planning.kinodynamic.plan import check_kinodynamic_request, plan_motion
 from hnr_planner.core.planning.limits import Limits
 from hnr_planner.core.planning.request import check_request, Request, without_search
 from hnr_planner.core.planning.result import (
@@ -31,6 +33,7 @@ from hnr_planner.core.planning.simplify import compile_shorten
 from hnr_planner.core.planning.stand_off import compile_stand_off
 from hnr_planner.core.spaces.primitives import kind_of
 from hnr_planner.core.spaces.space import Space
+from hnr_planner.core.systems.system import System
 import numpy as np
 from numpy.typing import ArrayLike
 
@@ -49,6 +52,8 @@ def plan(
     optimize_for: float = 0.0,
     optimize_iterations: int = 0,
     alternatives: int = 1,
+    system: System | None = None,
+    goal_speed: float = math.inf,
     cancel: Event | None = None,
     **settings: Any,
 ) -> PlanResult:
@@ -85,6 +90,12 @@ def plan(
         How many paths to look for, none of which can be deformed into another past an obstacle:
         ``PlanResult.paths``, the shortest first. There may be fewer. All have the same ends, also
         in a goal region.
+    system : System, optional
+        What moves, where that is a robot with inertia: then ``start`` is a state of it, the
+        answer has a trajectory, and ``algorithm`` is one of ``KINODYNAMIC_ALGORITHMS``.
+        ``simplify``, ``optimize_for`` and ``optimize_iterations`` shorten its duration.
+    goal_speed : float
+        Largest speed at the goal [m/s], for a system.
     cancel : threading.Event, optional
         Ends the call once it is set.
     **settings
@@ -101,14 +112,31 @@ def plan(
         When an argument is malformed; the message names the value and the rule.
 
     """
-    request = check_request(space, start, goal, goal_radius, algorithm, settings, simplify, seed)
     seconds = check_number('time_limit', time_limit, 0.0)
     improve_seconds = check_number('optimize_for', optimize_for, 0.0)
     improve_searches = check_count('optimize_iterations', optimize_iterations, 0)
-    n_paths = check_alternatives(space, alternatives, request.simplify)
     transitions = (
         math.inf if max_iterations is None else check_count('max_iterations', max_iterations, 1)
     )
+    if system is not None:
+        _check_for_system(alternatives)
+        motion = check_kinodynamic_request(
+            space,
+            start,
+            goal,
+            system,
+            algorithm=algorithm,
+            settings=settings,
+            goal_radius=goal_radius,
+            goal_speed=goal_speed,
+            simplify=simplify,
+            seed=seed,
+        )
+        return plan_motion(motion, seconds, transitions, improve_seconds, improve_searches, cancel)
+    if goal_speed != math.inf:
+        raise RequestError(f'goal_speed goes with a system only, got {goal_speed!r}')
+    request = check_request(space, start, goal, goal_radius, algorithm, settings, simplify, seed)
+    n_paths = check_alternatives(space, alternatives, request.simplify)
     _compile(request, n_paths)
 
     began = time.perf_counter()
@@ -121,6 +149,11 @@ def plan(
     if n_paths > 1 and answer.status is PlannerStatus.SOLVED:
         answer = with_alternatives(request, answer, n_paths, limits, began)
     return answer
+
+
+def _check_for_system(alternatives: int) -> None:
+    if check_count('alternatives', alternatives, 1) > 1:
+        raise RequestError(f'alternatives must be 1 for a system, got {alternatives}')
 
 
 def _answer_by_search(

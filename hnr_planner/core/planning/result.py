@@ -5,6 +5,7 @@ from enum import Enum
 from typing import NamedTuple
 
 from hnr_planner.core.checks import Floats
+from hnr_planner.core.systems.trajectory import Trajectory
 import numpy as np
 from numpy.typing import NDArray
 
@@ -19,6 +20,7 @@ class PlannerStatus(Enum):
     TIMEOUT = 'the time limit passed before a path was found'
     ITERATION_LIMIT = 'the limit on transitions was reached before a path was found'
     CANCELLED = 'the search was cancelled'
+    INEVITABLE_COLLISION = 'the start is too fast to avoid a collision'
 
 
 class FirstSolution(NamedTuple):
@@ -63,6 +65,9 @@ class PlanResult:
     first_solution : FirstSolution or None
     others : tuple of (k, dim)
         Further paths, when alternatives were asked for.
+    trajectory : Trajectory or None
+        For a system what it does over time; ``path`` has the positions at its times, between which
+        the way is curved, and ``length`` is the length of that way.
 
     """
 
@@ -80,6 +85,7 @@ class PlanResult:
     cut_by_time: bool
     first_solution: FirstSolution | None
     others: tuple[Floats, ...] = ()
+    trajectory: Trajectory | None = None
 
     @property
     def paths(self) -> tuple[Floats, ...]:

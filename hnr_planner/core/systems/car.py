@@ -64,6 +64,11 @@ class Car:
             object.__setattr__(self, name, check_limit(name, getattr(self, name)))
 
     @property
+    def largest_acceleration(self) -> float:
+        """Largest change of the velocity (2,) in a second [m/s^2], with that of turning."""
+        return math.hypot(self.max_acceleration, self.max_curvature * self.max_speed**2)
+
+    @property
     def data(self) -> CarData:
         """The compiled system in the caller's units."""
         return CarData(self.max_acceleration, self.max_speed, self.max_curvature)
@@ -84,18 +89,22 @@ class Car:
         checked = check_point('control', control, self.control_dim)
         return moved(self.data, start, checked, check_number('duration', duration, 0.0))
 
+    def velocity(self, state: Floats) -> Floats:
+        """Return how a state moves: (2,) [m/s]."""
+        heading, speed = state[HEADING], state[SPEED]
+        return speed * np.array([math.cos(heading), math.sin(heading)])
+
     def speed(self, state: Floats) -> float:
         """Return the speed [m/s] of a state, forwards or backwards."""
         return abs(float(state[SPEED]))
 
-    def distance(self, state: Floats, control: Floats, duration: float) -> float:
-        """Return the length [m] of the way in ``duration`` [s], back and forth."""
-        speed, acceleration = float(state[SPEED]), float(control[0])
-        rest = -speed / acceleration if acceleration != 0.0 else math.inf
-        if 0.0 < rest < duration:
-            there, back = speed * rest / 2.0, acceleration * (duration - rest) ** 2 / 2.0
-            return abs(there) + abs(back)
-        return abs(duration * (speed + acceleration * duration / 2.0))
+    def lengths(self, states: Floats, controls: Floats, durations: Floats) -> Floats:
+        """Return how far steps go, back and forth: (k,) [m]."""
+        before, pull = states[:, SPEED], controls[:, 0]
+        after = before + pull * durations
+        turns = before * after < 0.0
+        there_and_back = (before**2 + after**2) / (2.0 * np.abs(np.where(turns, pull, 1.0)))
+        return np.where(turns, there_and_back, np.abs(before + after) / 2.0 * durations)
 
     def compiled(self, space: Space) -> CarData:
         """Return the compiled system in the kernel frame of a space."""
@@ -104,15 +113,21 @@ class Car:
             self.max_acceleration / scale, self.max_speed / scale, self.max_curvature * scale
         )
 
-    def to_kernel(self, space: Space, state: Floats) -> Floats:
-        """Bring a state (4,) into the kernel frame of a space."""
-        x, y = space.to_kernel(state[:HEADING])
-        return np.array([x, y, state[HEADING] + _turn(space), state[SPEED] / space.scale])
+    def to_kernel(self, space: Space, states: Floats) -> Floats:
+        """Bring states (..., 4) into the kernel frame of a space."""
+        inside = np.empty_like(states)
+        inside[..., :HEADING] = space.to_kernel(states[..., :HEADING])
+        inside[..., HEADING] = states[..., HEADING] + _turn(space)
+        inside[..., SPEED] = states[..., SPEED] / space.scale
+        return inside
 
     def from_kernel(self, space: Space, states: Floats) -> Floats:
-        """Bring states (k, 4) out of the kernel frame of a space."""
-        headings, speeds = states[:, HEADING] - _turn(space), states[:, SPEED] * space.scale
-        return np.column_stack([space.from_kernel(states[:, :HEADING]), headings, speeds])
+        """Bring states (..., 4) out of the kernel frame of a space."""
+        outside = np.empty_like(states)
+        outside[..., :HEADING] = space.from_kernel(states[..., :HEADING])
+        outside[..., HEADING] = states[..., HEADING] - _turn(space)
+        outside[..., SPEED] = states[..., SPEED] * space.scale
+        return outside
 
     def controls_to_kernel(self, space: Space, controls: Floats) -> Floats:
         """Bring controls (k, 2) into the kernel frame of a space."""

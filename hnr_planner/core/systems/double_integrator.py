@@ -70,6 +70,11 @@ class DoubleIntegrator:
         return self.dim
 
     @property
+    def largest_acceleration(self) -> float:
+        """Largest change of the velocity (dim,) in a second [m/s^2]."""
+        return self.max_acceleration
+
+    @property
     def data(self) -> DoubleIntegratorData:
         """The compiled system in the caller's units."""
         return DoubleIntegratorData(self.max_acceleration, self.max_speed)
@@ -91,30 +96,40 @@ class DoubleIntegrator:
         acceleration = check_point('control', control, self.control_dim)
         return moved(self.data, start, acceleration, check_number('duration', duration, 0.0))
 
+    def velocity(self, state: Floats) -> Floats:
+        """Return how a state moves: (dim,) [m/s]."""
+        _, velocity = np.split(state, 2)
+        return velocity
+
     def speed(self, state: Floats) -> float:
         """Return the speed [m/s] of a state."""
-        return math.hypot(*np.split(state, 2)[1])
+        return math.hypot(*self.velocity(state))
 
-    def distance(self, state: Floats, control: Floats, duration: float) -> float:
-        """Return the length [m] of the way in ``duration`` [s] (Gauss-Legendre, 16 nodes)."""
-        times = duration * (_NODES[:, np.newaxis] + 1.0) / 2.0
-        speeds = np.linalg.norm(np.split(state, 2)[1] + times * control, axis=1)
-        return float(duration / 2.0 * (_WEIGHTS @ speeds))
+    def lengths(self, states: Floats, controls: Floats, durations: Floats) -> Floats:
+        """Return how far steps go: (k,) [m], by 16 nodes of Gauss and Legendre."""
+        total, velocities = np.zeros(len(durations)), np.split(states, 2, axis=1)[1]
+        for node, weight in zip(_NODES, _WEIGHTS, strict=True):
+            times = durations * (node + 1.0) / 2.0
+            now = velocities + times[:, np.newaxis] * controls
+            total += weight * np.linalg.norm(now, axis=1)
+        return durations / 2.0 * total
 
     def compiled(self, space: Space) -> DoubleIntegratorData:
         """Return the compiled system in the kernel frame of a space."""
         limits = self.max_acceleration / space.scale, self.max_speed / space.scale
         return DoubleIntegratorData(*limits)
 
-    def to_kernel(self, space: Space, state: Floats) -> Floats:
-        """Bring a state (2 dim,) into the kernel frame of a space."""
-        position, velocity = np.split(state, 2)
-        return np.concatenate([space.to_kernel(position), vectors_to_kernel(space, velocity)])
+    def to_kernel(self, space: Space, states: Floats) -> Floats:
+        """Bring states (..., 2 dim) into the kernel frame of a space."""
+        positions, velocities = np.split(states, 2, axis=-1)
+        inside = space.to_kernel(positions), vectors_to_kernel(space, velocities)
+        return np.concatenate(inside, axis=-1)
 
     def from_kernel(self, space: Space, states: Floats) -> Floats:
-        """Bring states (k, 2 dim) out of the kernel frame of a space."""
-        positions, velocities = np.split(states, 2, axis=1)
-        return np.hstack([space.from_kernel(positions), vectors_from_kernel(space, velocities)])
+        """Bring states (..., 2 dim) out of the kernel frame of a space."""
+        positions, velocities = np.split(states, 2, axis=-1)
+        outside = space.from_kernel(positions), vectors_from_kernel(space, velocities)
+        return np.concatenate(outside, axis=-1)
 
     def controls_to_kernel(self, space: Space, controls: Floats) -> Floats:
         """Bring accelerations (k, dim) into the kernel frame of a space."""

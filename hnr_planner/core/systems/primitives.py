@@ -22,6 +22,7 @@ Compiled code calls them by these names for any system, as it does with the prim
 
 from typing import Any, NamedTuple
 
+from hnr_planner.core.borrowed import borrowed
 from hnr_planner.core.kernels import interpreted, kernel
 from numba.core.dispatcher import Dispatcher
 from numba.extending import overload
@@ -133,6 +134,16 @@ def moved(system, state, control, duration):
     end = state.copy()
     move(system, state, control, duration, end)
     return end
+
+
+@kernel
+def first_blocked_step(system, space, states, controls, durations):
+    """Index of the first step of a motion that meets the boundary; -1 when none does."""
+    system, space = borrowed(system), borrowed(space)
+    for k in range(len(durations)):
+        if contact(system, space, states[k], controls[k], durations[k]) <= durations[k]:
+            return k
+    return -1
 
 
 @kernel

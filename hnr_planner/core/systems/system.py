@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 #: Limits may be exceeded by this part of them, which is rounding.
-ROUNDING = 1e-9
+ROUNDING = 1e-11
 
 
 class System(Protocol):
@@ -36,6 +36,10 @@ class System(Protocol):
         """Largest speed [m/s]."""
 
     @property
+    def largest_acceleration(self) -> float:
+        """Largest change of the velocity (dim,) in a second [m/s^2]."""
+
+    @property
     def data(self) -> Any:
         """The compiled system in the caller's units."""
 
@@ -45,20 +49,23 @@ class System(Protocol):
     def propagate(self, state: ArrayLike, control: ArrayLike, duration: float) -> Floats:
         """Return the state (state_dim,) after ``duration`` [s] under a constant control."""
 
+    def velocity(self, state: Floats) -> Floats:
+        """Return how a state moves: (dim,) [m/s]."""
+
     def speed(self, state: Floats) -> float:
         """Return the speed [m/s] of a state."""
 
-    def distance(self, state: Floats, control: Floats, duration: float) -> float:
-        """Return the length [m] of the way in ``duration`` [s] under a constant control."""
+    def lengths(self, states: Floats, controls: Floats, durations: Floats) -> Floats:
+        """Return how far states (k, state_dim) go in durations (k,) under controls: (k,) [m]."""
 
     def compiled(self, space: Space) -> Any:
         """Return the compiled system in the kernel frame of a space."""
 
-    def to_kernel(self, space: Space, state: Floats) -> Floats:
-        """Bring a state (state_dim,) into the kernel frame of a space."""
+    def to_kernel(self, space: Space, states: Floats) -> Floats:
+        """Bring states (..., state_dim) into the kernel frame of a space."""
 
     def from_kernel(self, space: Space, states: Floats) -> Floats:
-        """Bring states (k, state_dim) out of the kernel frame of a space."""
+        """Bring states (..., state_dim) out of the kernel frame of a space."""
 
     def controls_to_kernel(self, space: Space, controls: Floats) -> Floats:
         """Bring controls (k, control_dim) into the kernel frame of a space."""

@@ -45,8 +45,8 @@ class Trajectory:
     @property
     def length(self) -> float:
         """Length of the way [m]."""
-        steps = zip(self.states[:-1], self.controls, np.diff(self.times), strict=True)
-        return float(sum(self.system.distance(*step) for step in steps))
+        steps = self.states[:-1], self.controls, np.diff(self.times)
+        return float(self.system.lengths(*steps).sum())
 
     def at(self, times: ArrayLike) -> Floats:
         """Return the states (k, state_dim) at times (k,) [s], those outside taken at the ends."""

@@ -57,9 +57,9 @@ def test_motion_may_be_interrupted(system: System) -> None:
         between = system.propagate(state, control, first)
         whole = system.propagate(state, control, first + second)
         assert system.propagate(between, control, second) == pytest.approx(whole, abs=1e-12)
-        parts = system.distance(state, control, first) + system.distance(between, control, second)
-        length = system.distance(state, control, first + second)
-        assert length == pytest.approx(parts, rel=3e-3)
+        states, controls = np.stack([state, state, between]), np.stack([control] * 3)
+        lengths = system.lengths(states, controls, np.array([first + second, first, second]))
+        assert lengths[0] == pytest.approx(lengths[1:].sum(), rel=3e-3)
         assert (system.propagate(state, control, 0.0) == state).all()
 
 
