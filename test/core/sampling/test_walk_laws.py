@@ -26,7 +26,7 @@ from scipy import stats
 N_ONE_STEP = 1_000_000
 N_STATIONARITY = 100_000
 N_REVERSIBILITY = 200_000
-N_CHAINS = 3_000
+N_CHAINS = 2_000
 
 
 @kernel
@@ -107,9 +107,9 @@ def test_a_walk_is_reversible(gate_set, walk):
 
 @pytest.mark.parametrize('walk', ['hit_and_run', 'coordinate_hit_and_run'])
 def test_draws_are_uniform_in_the_end(gate_set, walk):
-    """The last points of many chains of 300 steps from one point."""
+    """The last points of many chains of 200 steps from one point."""
     region, space, points = gate_set
-    draws = sample(space, points[0], 1, walk=walk, n_chains=N_CHAINS, burn_in=299, seed=7)[:, 0]
+    draws = sample(space, points[0], 1, walk=walk, n_chains=N_CHAINS, burn_in=199, seed=7)[:, 0]
     assert space.contains(draws).all()
     others = region.uniform(N_STATIONARITY, np.random.default_rng(8))
     assert same_law(region.cell_of(draws), region.cell_of(others)) > ALPHA
@@ -123,7 +123,7 @@ def test_draws_are_uniform_on_a_turned_map(name):
     turned = GridSpace.from_blocked(region.occupied, resolution, (x, y, yaw))
     turn = np.exp(1j * yaw) * resolution
     start = (points[0] @ [1, 1j]) * turn + complex(x, y)
-    draws = sample(turned, (start.real, start.imag), 1, n_chains=N_CHAINS, burn_in=299, seed=7)[
+    draws = sample(turned, (start.real, start.imag), 1, n_chains=N_CHAINS, burn_in=199, seed=7)[
         :, 0
     ]
     assert turned.contains(draws).all()
