@@ -8,7 +8,7 @@ from pathlib import Path
 from hnr_planner.core import warm_up
 from hnr_planner.experiments.experiment import Experiment
 from hnr_planner.experiments.figures import save, sign
-from hnr_planner.experiments.results import made_with, Results, ResultsFile
+from hnr_planner.experiments.results import Results, ResultsFile
 from joblib import delayed, Parallel
 from tqdm import tqdm
 
@@ -53,7 +53,7 @@ def conduct(
     file.extend(_rows(experiment, file, runs, n_jobs))
     results = file.read(runs)
 
-    signature = _signature(experiment, results)
+    signature = _signature(experiment, results, file.made_with)
     figure = experiment.figure(results)
     sign(figure, signature)
     save(figure, folder / f'{experiment.name}.svg')
@@ -79,9 +79,8 @@ def _rows(
         yield case, seed, measured
 
 
-def _signature(experiment: Experiment, results: Results) -> str:
+def _signature(experiment: Experiment, results: Results, made: dict[str, str]) -> str:
     """Return what was run, in one line."""
-    made = made_with()
     return (
         f'{results.runs} runs of each, seeds 0 to {results.runs - 1}. python -m hnr_planner '
         f'experiment {experiment.name} --runs {results.runs}; hnr_planner {made["hnr_planner"]}, '

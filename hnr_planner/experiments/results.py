@@ -111,7 +111,8 @@ class ResultsFile:
         if fresh or not (file.exists() and self._note.exists()):
             file.write_text('', encoding='utf-8')
             self._note.write_text(json.dumps(made_with(), indent=2) + '\n', encoding='utf-8')
-        self._check_note()
+        #: What the rows were made with.
+        self.made_with = self._check_note()
         lines = file.read_text(encoding='utf-8').splitlines(keepends=True)
         whole = [line for line in lines if line.endswith('\n')]
         self._check_rows(whole)
@@ -143,14 +144,16 @@ class ResultsFile:
             {name: _array(column) for name, column in zip(header, columns, strict=True)}
         )
 
-    def _check_note(self) -> None:
+    def _check_note(self) -> dict[str, str]:
         """Refuse results of another core: they might differ."""
-        note, now = json.loads(self._note.read_text(encoding='utf-8')), made_with()
+        note: dict[str, str] = json.loads(self._note.read_text(encoding='utf-8'))
+        now = made_with()
         if note['core'] != now['core']:
             raise ResultsError(
                 f'{self._file} holds results of other sources of the core ({note["core"]}, now '
                 f'{now["core"]}): choose another folder, or begin afresh'
             )
+        return note
 
     def _check_rows(self, lines: list[str]) -> None:
         """Refuse results of other cases."""
