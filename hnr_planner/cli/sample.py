@@ -39,6 +39,10 @@ the start lies, and the first points are still near the start.
 Points of one walk depend on each other. --thin K lets the walk take K steps for each point: the
 points depend less on each other. --chains K draws N points K times, independently; the list then
 has a third column, the number of the chain from 0. The same seed gives the same points.
+
+--diagnose says on one line of stderr what the points are worth: how far the chains agree (R-hat)
+and how many independent points they are as good as, or why they should not be taken for uniform.
+One chain alone cannot show that: take four, and a larger --thin or --n until the line says so.
 """
 
 
@@ -83,6 +87,9 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
         '--seed', type=whole, metavar='N', help='seed of the random numbers; default a fresh one'
     )
     parser.add_argument(
+        '--diagnose', action='store_true', help='say on stderr what the points are worth'
+    )
+    parser.add_argument(
         '--csv',
         type=output_file,
         metavar='FILE',
@@ -97,6 +104,8 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Sample, write the points and the picture, and return the exit code."""
+    from hnr_planner.core import diagnose
+
     if arguments.csv and arguments.plot and arguments.csv.resolve() == arguments.plot.resolve():
         raise BadInputError(f'--csv and --plot both name {arguments.csv}: choose another name')
     occupancy, space = open_map(arguments)
@@ -104,6 +113,8 @@ def run(arguments: argparse.Namespace) -> int:
     seed = secrets.randbelow(2**31) if arguments.seed is None else arguments.seed
     compile_kernels()
     chains = _draw(arguments, space, seed)
+    if arguments.diagnose:
+        print(diagnose(chains).message, file=sys.stderr)
 
     if arguments.csv:
         with arguments.csv.open('w', encoding='utf-8', newline='') as file:

@@ -3,6 +3,7 @@
 from collections.abc import Callable
 import csv
 from pathlib import Path
+import re
 import subprocess
 import sys
 from test.brute_force import path_collisions
@@ -63,6 +64,18 @@ def test_chains_are_told_apart_and_each_is_the_one_of_fewer(run: Run, rooms_file
         points = np.array([row[:2] for row in rows], dtype=float)
         np.testing.assert_array_equal(points[:40], read(run(*command).out))
         assert len(np.unique(points, axis=0)) == 120
+
+
+def test_diagnosis_is_a_line_beside_the_points(run: Run, rooms_file: Path) -> None:
+    command = ['sample', rooms_file, '--n', 1000, '--seed', 5, '--diagnose']
+    ran = run(*command, '--chains', 4, '--thin', 20)
+    assert ran.code == 0 and len(ran.out.splitlines()) == 4001
+    assert re.fullmatch(
+        r'converged: R-hat at most 1\.00\d\d, \d+ effective draws or more\n', ran.err
+    )
+    ran = run(*command)
+    assert ran.code == 0 and len(ran.out.splitlines()) == 1001
+    assert ran.err.startswith('not converged: one chain cannot show') and ran.err.count('\n') == 1
 
 
 def test_start_chooses_the_part(run: Run, rooms: OccupancyMap, rooms_file: Path) -> None:
