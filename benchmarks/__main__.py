@@ -19,6 +19,7 @@ from benchmarks.clearance import clearance
 from benchmarks.competitors import Competitor, lineup
 from benchmarks.every_problem import every_problem
 from benchmarks.first_path import first_path
+from benchmarks.kinodynamic import kinodynamic
 from benchmarks.picture import draw
 from benchmarks.problems import missing_maps, Problem, problems
 from benchmarks.progress import say
@@ -40,6 +41,7 @@ SECTIONS: tuple[SectionOf, ...] = (
     success,
     roadmap,
     clearance,
+    kinodynamic,
     answers,
     properties,
     every_problem,

@@ -17,8 +17,7 @@ from numpy.typing import NDArray
 Floats = NDArray[np.float64]
 
 FOLDER = Path(__file__).parent
-SOURCE = FOLDER / 'planners.cpp'
-PROGRAM = Path(__file__).resolve().parents[2] / 'build' / 'benchmarks' / 'planners'
+BUILD = Path(__file__).resolve().parents[2] / 'build' / 'benchmarks'
 INSTALL = 'sudo apt install g++ pkg-config libompl-dev'
 SEED = '1'
 
@@ -34,18 +33,19 @@ class Answer(NamedTuple):
     path: Floats
 
 
-def native() -> list[str]:
-    """Return the command of the C++ program, compiled where need be, or raise MissingOmpl."""
+def native(name: str = 'planners') -> list[str]:
+    """Return the command of a C++ program, compiled where need be, or raise MissingOmpl."""
+    program, source = BUILD / name, FOLDER / f'{name}.cpp'
     for tool in ('g++', 'pkg-config'):
         if shutil.which(tool) is None:
             raise MissingOmpl(f'OMPL in C++: {tool} is missing ({INSTALL})')
     newest = max(file.stat().st_mtime for file in FOLDER.glob('*.[ch]pp'))
-    if not PROGRAM.exists() or PROGRAM.stat().st_mtime < newest:
+    if not program.exists() or program.stat().st_mtime < newest:
         # Debian's --libs name libraries of Boost that are not there: the one library is enough.
         flags = _output(['pkg-config', '--cflags', 'ompl']).split()
-        PROGRAM.parent.mkdir(parents=True, exist_ok=True)
-        _output(['g++', '-std=c++17', '-O3', str(SOURCE), *flags, '-lompl', '-o', str(PROGRAM)])
-    return [str(PROGRAM), SEED]
+        BUILD.mkdir(parents=True, exist_ok=True)
+        _output(['g++', '-std=c++17', '-O3', str(source), *flags, '-lompl', '-o', str(program)])
+    return [str(program), SEED]
 
 
 def native_version() -> str:
@@ -117,12 +117,15 @@ class Session:
         self._process.stdin.write(f'{line}\n')
         self._process.stdin.flush()
 
-    def _answer(self) -> Answer:
+    def _line(self) -> str:
         assert self._process.stdout
         line = self._process.stdout.readline()
         if not line:
             raise MissingOmpl(f'{self._process.args} ended with {self._process.wait()}')
-        seconds, _, *numbers = line.split()
+        return line
+
+    def _answer(self) -> Answer:
+        seconds, _, *numbers = self._line().split()
         return Answer(float(seconds), np.array(numbers, dtype=float).reshape(-1, 2))
 
 

@@ -11,6 +11,7 @@ found as a root, never by stepping along.
     it is registered for each kind of compiled space that can answer.
 """
 
+from collections.abc import Callable
 import math
 from typing import Any, NamedTuple
 
@@ -63,6 +64,22 @@ def _parabola_coordinate(curve, i):
 @kernel
 def _arc_coordinate(curve, i):
     return Winding(curve.position[i], curve.heading - i * (math.pi / 2.0), curve.curvature)
+
+
+@kernel
+def _parabola_along(curve, normal):
+    x, v, a = 0.0, 0.0, 0.0
+    for i in range(len(normal)):
+        x += normal[i] * curve.position[i]
+        v += normal[i] * curve.velocity[i]
+        a += normal[i] * curve.acceleration[i]
+    return Quadratic(x, v, a)
+
+
+@kernel
+def _arc_along(curve, normal):
+    start = normal[0] * curve.position[0] + normal[1] * curve.position[1]
+    return Winding(start, curve.heading - math.atan2(normal[1], normal[0]), curve.curvature)
 
 
 @kernel
@@ -132,27 +149,45 @@ class Coordinate(NamedTuple):
     reach: Dispatcher
 
 
-_COORDINATE = {Parabola: _parabola_coordinate, Arc: _arc_coordinate}
+class Coordinates(NamedTuple):
+    """The kernels of one kind of curve: its coordinates along an axis and along a unit vector."""
+
+    coordinate: Dispatcher
+    along: Dispatcher
+
+
+_CURVES = {
+    Parabola: Coordinates(_parabola_coordinate, _parabola_along),
+    Arc: Coordinates(_arc_coordinate, _arc_along),
+}
 _COORDINATES = {
     Quadratic: Coordinate(_quadratic_at, _quadratic_turn, _quadratic_reach),
     Winding: Coordinate(_winding_at, _winding_turn, _winding_reach),
 }
 _LEAVE_CURVE: dict[type, Dispatcher] = {}
+_KNOWS: dict[type, Callable[[Any], bool]] = {}
 
 
-def register_curves(data_type: type, leave: Dispatcher) -> None:
-    """Let ``leave_curve`` answer for NamedTuples of ``data_type``."""
-    _LEAVE_CURVE[data_type] = leave
+def register_curves(
+    data_type: type, leave: Dispatcher, knows: Callable[[Any], bool] = lambda _: True
+) -> None:
+    """Let ``leave_curve`` answer for those NamedTuples of ``data_type`` that ``knows`` takes."""
+    _LEAVE_CURVE[data_type], _KNOWS[data_type] = leave, knows
 
 
 def knows_curves(data: Any) -> bool:
     """Say whether it is known where curves leave a compiled space."""
-    return type(data) in _LEAVE_CURVE
+    return type(data) in _KNOWS and _KNOWS[type(data)](data)
 
 
 def coordinate(curve: Any, i: int) -> Any:
     """Return coordinate ``i`` of a curve, as a function of its parameter."""
-    return interpreted(_COORDINATE[type(curve)])(curve, i)
+    return interpreted(_CURVES[type(curve)].coordinate)(curve, i)
+
+
+def along(curve: Any, normal: Any) -> Any:
+    """Return the coordinate of a curve along a unit vector ``normal`` (dim,), likewise."""
+    return interpreted(_CURVES[type(curve)].along)(curve, normal)
 
 
 def at(f: Any, t: float) -> float:
@@ -177,8 +212,14 @@ def leave_curve(space: Any, curve: Any, end: float) -> float:
 
 @overload(coordinate)
 def _compiled_coordinate(curve, i):
-    compiled = _COORDINATE[curve.instance_class]
+    compiled = _CURVES[curve.instance_class].coordinate
     return lambda curve, i: compiled(curve, i)
+
+
+@overload(along)
+def _compiled_along(curve, normal):
+    compiled = _CURVES[curve.instance_class].along
+    return lambda curve, normal: compiled(curve, normal)
 
 
 @overload(at)
@@ -203,6 +244,13 @@ def _compiled_reach(f, value, t):
 def _compiled_leave_curve(space, curve, end):
     compiled = _LEAVE_CURVE[space.instance_class]
     return lambda space, curve, end: compiled(space, curve, end)
+
+
+@kernel
+def point_at(curve, t, x):
+    """Write the point of a curve at ``t``."""
+    for i in range(len(x)):
+        x[i] = at(coordinate(curve, i), t)
 
 
 @kernel

@@ -21,6 +21,8 @@ from hnr_planner.core.systems.system import ROUNDING, vectors_from_kernel, vecto
 import numpy as np
 from numpy.typing import ArrayLike
 
+#: Part of a vector that has to be left across another for its direction to be known.
+UPRIGHT = 1e-6
 #: Nodes and weights on [0, 1] for the length of a piece of a parabola.
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(16)
 
@@ -209,8 +211,10 @@ def _to_rim(limit, radius, offset, wish, control):
         dot += wish[i] * offset[i]
     across = wish - (dot / (apart * apart)) * offset
     length = norm(across)
+    # Where next to nothing is left of it, rounding is: the middle of the rim is as near.
+    upright = length > UPRIGHT * norm(wish)
     for i in range(len(wish)):
-        sideways = across[i] / length * height if length > 0.0 else 0.0
+        sideways = across[i] / length * height if upright else 0.0
         control[i] = along * offset[i] + sideways
 
 

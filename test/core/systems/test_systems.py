@@ -6,6 +6,7 @@ from typing import Any
 
 from hnr_planner.core import GridSpace, HnrError
 from hnr_planner.core.systems import Car, DoubleIntegrator, System
+from hnr_planner.core.systems.double_integrator import limit_acceleration
 from hnr_planner.core.systems.primitives import first_contact
 import numpy as np
 import pytest
@@ -135,3 +136,22 @@ def test_other_bad_numbers_are_named() -> None:
         Car().check_state('state', (0, 0, 0, -1.2))
     with pytest.raises(HnrError, match='duration must be in 0'):
         system.propagate((0, 0, 0, 0), (0, 0), -1.0)
+
+
+def test_the_controller_takes_the_best_acceleration_within_both_limits() -> None:
+    """Against the nearest of 200 x 200 accelerations, and right up to where rounding decides."""
+    system = DoubleIntegrator(max_acceleration=1.0, max_speed=2.0)
+    rng, step = np.random.default_rng(6), 0.4
+    radius, angle = np.meshgrid(np.linspace(0.0, 1.0, 200), np.linspace(0.0, 2.0 * np.pi, 200))
+    allowed = np.stack([radius * np.cos(angle), radius * np.sin(angle)], axis=-1).reshape(-1, 2)
+    for k in range(300):
+        v = rng.normal(size=2)
+        v *= 2.0 * rng.choice([1.0, rng.random()]) / np.hypot(*v)
+        wish = 5.0 * rng.normal(size=2) if k % 3 else v * (1.0 + 1e-12 * rng.normal())
+        control = wish.copy()
+        limit_acceleration(system.data, v, step, control)
+        assert np.hypot(*control) <= 1.0 + 1e-9
+        assert np.hypot(*(v + step * control)) <= 2.0 + 1e-9
+        others = allowed[np.hypot(*(v + step * allowed).T) <= 2.0]
+        nearest = np.hypot(*(others - wish).T).min()
+        assert np.hypot(*(control - wish)) <= nearest + 1e-6

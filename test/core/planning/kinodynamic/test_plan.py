@@ -163,17 +163,17 @@ def test_proofs_of_collision_hold_against_random_driving() -> None:
     """Whatever 300 random motions do, none outlives the proof; the hybrid solves the others."""
     rng = np.random.default_rng(8)
     seen = {True: 0, False: 0}
-    for _ in range(60):
+    for _ in range(40):
         v = rng.normal(size=2)
         v *= rng.uniform(0.5, 2.0) / np.hypot(*v)
         begin = state(*rng.uniform((0.1, 0.1), (5.9, 1.4)), *v)
-        result = solve(begin, time_limit=0.5)
+        result = solve(begin, time_limit=0.1)
         proved = result.status is PlannerStatus.INEVITABLE_COLLISION
         seen[proved] += 1
         assert proved or result.status in (PlannerStatus.SOLVED, PlannerStatus.TIMEOUT)
         if proved:
             assert not any(survives(begin, rng) for _ in range(300))
-    assert min(seen.values()) > 10
+    assert min(seen.values()) > 8
 
 
 def survives(begin: Any, rng: np.random.Generator) -> bool:

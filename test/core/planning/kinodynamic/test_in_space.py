@@ -1,0 +1,56 @@
+"""A double integrator in three dimensions, among spheres and boxes."""
+
+import math
+
+from hnr_planner.core import BallSpace, BoxSpace, DifferenceSpace, plan, PlannerStatus
+from hnr_planner.core.systems import DoubleIntegrator
+import numpy as np
+import pytest
+
+SYSTEM = DoubleIntegrator(dim=3, max_acceleration=1.0, max_speed=1.5)
+SPACE = DifferenceSpace(
+    BoxSpace((0, 0, 0), (4, 4, 4)),
+    BallSpace((2, 2, 2), 1.2),
+    BoxSpace((1.5, -1, -1), (2.5, 1.5, 5)),
+    BoxSpace((1.5, 2.5, -1), (2.5, 5, 3)),
+)
+START, GOAL = np.array([0.5, 0.5, 0.5, 0.0, 0.0, 0.0]), np.array([3.5, 3.5, 0.5])
+
+
+@pytest.mark.parametrize('speed', [0.0, 0.8])
+@pytest.mark.parametrize('algorithm', ['kinodynamic_connect', 'kinodynamic_rrt'])
+def test_a_trajectory_among_spheres_is_free_and_keeps_the_limits(
+    algorithm: str, speed: float
+) -> None:
+    """Looked at every thousandth of a step, and simulated again from the start."""
+    settings = {} if algorithm == 'kinodynamic_connect' else {'boundary': 'forbidden'}
+    begin = START + [0, 0, 0, 0, speed, 0]
+    result = plan(
+        SPACE,
+        begin,
+        GOAL,
+        system=SYSTEM,
+        algorithm=algorithm,
+        goal_radius=0.5,
+        time_limit=1e6,
+        seed=1,
+        **settings,
+    )
+    assert result.status is PlannerStatus.SOLVED
+    trajectory = result.trajectory
+    assert trajectory is not None
+    x, v = begin[:3], begin[3:]
+    for u, duration in zip(trajectory.controls, np.diff(trajectory.times), strict=True):
+        t = np.linspace(0.0, duration, 1000)[:, np.newaxis]
+        assert SPACE.contains(x + t * v + t**2 / 2 * u).all()
+        assert np.linalg.norm(u) <= 1.0 + 1e-9
+        x, v = x + duration * v + duration**2 / 2 * u, v + duration * u
+        assert np.linalg.norm(v) <= 1.5 + 1e-9
+    assert np.append(x, v) == pytest.approx(trajectory.states[-1], abs=1e-6)
+    assert math.dist(x, GOAL) <= 0.5 + 1e-6
+
+
+def test_a_start_that_cannot_stop_before_the_box_ends_is_named() -> None:
+    begin = START + [0, 0, 0, -1.2, 0, 0]
+    result = plan(SPACE, begin, GOAL, system=SYSTEM)
+    assert result.status is PlannerStatus.INEVITABLE_COLLISION
