@@ -25,7 +25,8 @@ if TYPE_CHECKING:
     from hnr_planner.core import GridSpace
     from numpy.typing import NDArray
 
-WALK_NAMES = ('hit_and_run', 'coordinate_hit_and_run')  # those of the core; see plan.py
+# Those of the core; see plan.py.
+WALK_NAMES = ('hit_and_run', 'coordinate_hit_and_run', 'ball_walk')
 EPILOG = """\
 example:
   python -m hnr_planner sample office.yaml --n 1000 --csv points.csv --plot points.png

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 from hnr_planner.core.checks import check_point, check_vector, Floats
 from hnr_planner.core.errors import SpaceError
-from hnr_planner.core.kernels import kernel
+from hnr_planner.core.kernels import inlined
 from hnr_planner.core.spaces.bounds import check_bounds
 from hnr_planner.core.spaces.convex import Convex, register_convex
 from hnr_planner.core.spaces.space import Space
@@ -78,12 +78,12 @@ class BoxSpace(Space):
         )
 
 
-@kernel
+@inlined
 def _count(boxes):
     return len(boxes.lower)
 
 
-@kernel
+@inlined
 def _holds(boxes, k, x, closed):
     for i in range(len(x)):
         below, above = x[i] - boxes.lower[k, i], boxes.upper[k, i] - x[i]
@@ -92,7 +92,7 @@ def _holds(boxes, k, x, closed):
     return True
 
 
-@kernel
+@inlined
 def _span(boxes, k, x, u, closed):
     """Cut the line with the two faces across each axis."""
     first, last = -math.inf, math.inf

@@ -21,9 +21,9 @@ from collections.abc import Sequence
 import math
 from typing import Any, NamedTuple
 
-from hnr_planner.core.kernels import interpreted, kernel
+from hnr_planner.core.kernels import INLINED, interpreted, kernel
 from hnr_planner.core.lengths import norm
-from hnr_planner.core.spaces.primitives import Primitives, register
+from hnr_planner.core.spaces.primitives import around_by_leaving, Primitives, register
 from numba.core.dispatcher import Dispatcher
 from numba.extending import overload
 import numpy as np
@@ -48,7 +48,10 @@ def is_convex(data: Any) -> bool:
 def register_convex(data_type: type, convex: Convex) -> None:
     """Let the primitives answer for NamedTuples of ``data_type``, whose pieces are convex."""
     _CONVEX[data_type] = convex
-    register(data_type, Primitives(_contains, _touches, _leave, _enter))
+    register(
+        data_type,
+        Primitives(_contains, _touches, _leave, _enter, around=_around, apart=_apart),
+    )
 
 
 def pack(pieces: Sequence[Any], gap: float) -> Any:
@@ -72,19 +75,19 @@ def span(space: Any, k: int, x: Any, u: Any, closed: bool) -> tuple[float, float
     return interpreted(_CONVEX[type(space)].span)(space, k, x, u, closed)
 
 
-@overload(count)
+@overload(count, jit_options=INLINED)
 def _compiled_count(space):
     compiled = _CONVEX[space.instance_class].count
     return lambda space: compiled(space)
 
 
-@overload(holds)
+@overload(holds, jit_options=INLINED)
 def _compiled_holds(space, k, x, closed):
     compiled = _CONVEX[space.instance_class].holds
     return lambda space, k, x, closed: compiled(space, k, x, closed)
 
 
-@overload(span)
+@overload(span, jit_options=INLINED)
 def _compiled_span(space, k, x, u, closed):
     compiled = _CONVEX[space.instance_class].span
     return lambda space, k, x, u, closed: compiled(space, k, x, u, closed)
@@ -137,3 +140,27 @@ def _enter(space, x, u, t):
         if t <= upper:
             first = min(first, max(t, lower))
     return first
+
+
+@kernel
+def _around(space, x, u, back):
+    """Take both ends from one piece; several may reach on from one to the next."""
+    if count(space) > 1:
+        return around_by_leaving(space, x, u, back)
+    lower, upper = span(space, 0, x, u, False)
+    return (lower, upper) if lower < 0.0 < upper else (0.0, 0.0)
+
+
+@kernel
+def _apart(space, x, u, back):
+    """Let every piece cut off what lies behind it, on either side."""
+    lower, upper = -math.inf, math.inf
+    for k in range(count(space)):
+        first, last = span(space, k, x, u, True)
+        if first <= 0.0 <= last:
+            return 0.0, 0.0
+        if last < 0.0:
+            lower = max(lower, last)
+        elif first <= last:
+            upper = min(upper, first)
+    return lower, upper

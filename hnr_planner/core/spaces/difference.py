@@ -8,6 +8,8 @@ from hnr_planner.core.errors import SpaceError
 from hnr_planner.core.kernels import kernel
 from hnr_planner.core.spaces.composed import check_parts, check_same_dim
 from hnr_planner.core.spaces.primitives import (
+    apart,
+    around,
     contains,
     enter,
     leave,
@@ -111,4 +113,11 @@ def _enter(difference, x, u, t):
     return s
 
 
-register(DifferenceData, Primitives(_contains, _touches, _leave, _enter))
+@kernel
+def _around(difference, x, u, back):
+    lower, upper = around(difference.base, x, u, back)
+    first, last = apart(difference.removed, x, u, back)
+    return max(lower, first), min(upper, last)
+
+
+register(DifferenceData, Primitives(_contains, _touches, _leave, _enter, around=_around))

@@ -7,6 +7,8 @@ from hnr_planner.core.checks import check_point, check_vector, Floats
 from hnr_planner.core.errors import SpaceError
 from hnr_planner.core.kernels import kernel
 from hnr_planner.core.spaces.bounds import check_bounds
+from hnr_planner.core.spaces.places import register_places
+from hnr_planner.core.spaces.polytope_places import doubt, Layout, layout_of, POLYTOPE_PLACES
 from hnr_planner.core.spaces.primitives import Primitives, register
 from hnr_planner.core.spaces.space import Space
 import numpy as np
@@ -26,11 +28,17 @@ class PolytopeData(NamedTuple):
         Unit vectors, outward.
     offsets : (m,)
         The inequalities are ``normals x < offsets``.
+    layout : Layout
+        The normals as walks read them.
+    doubt : float
+        A distance to a plane that walks remember is right up to this.
 
     """
 
     normals: Floats
     offsets: Floats
+    layout: Layout
+    doubt: float
 
 
 class PolytopeSpace(Space):
@@ -54,9 +62,11 @@ class PolytopeSpace(Space):
     def __init__(self, a: ArrayLike, b: ArrayLike) -> None:
         normals, offsets = _check_inequalities(a, b)
         self.dim = normals.shape[1]
-        self.data = PolytopeData(normals, offsets)
-        self._lower, self._upper = _bounds(normals, offsets)
-        check_bounds('the polytope', self._lower, self._upper)
+        lower, upper = self._lower, self._upper = _bounds(normals, offsets)
+        check_bounds('the polytope', lower, upper)
+        self.data = PolytopeData(
+            normals, offsets, layout_of(normals), doubt(normals, offsets, lower, upper)
+        )
         #: Centre (dim,) of the largest ball inside, and its radius.
         self.centre, self.inner_radius = _largest_ball(normals, offsets)
         if self.inner_radius <= THINNEST * np.linalg.norm(self._upper - self._lower):
@@ -77,13 +87,13 @@ class PolytopeSpace(Space):
 
     def covers_box(self, lower: Floats, upper: Floats) -> bool:
         """Say whether every inequality holds at the corner where it is nearest to failing."""
-        normals, offsets = self.data
+        normals, offsets = self.data.normals, self.data.offsets
         worst = np.where(normals > 0.0, upper, lower)
         return bool(((normals * worst).sum(axis=1) <= offsets).all())
 
     def why_not_free(self, point: ArrayLike) -> str:
         """Say in words why ``point`` (dim,) is not free."""
-        normals, offsets = self.data
+        normals, offsets = self.data.normals, self.data.offsets
         excess = normals @ check_point('point', point, self.dim) - offsets
         k = int(np.argmax(excess))
         return f'outside the polytope: {excess[k]:g} beyond the plane of row {k} of a'
@@ -200,3 +210,4 @@ def _rate(polytope, k, u):
 
 
 register(PolytopeData, Primitives(_contains, _touches, _leave, _enter))
+register_places(PolytopeData, POLYTOPE_PLACES)

@@ -13,6 +13,11 @@ A compiled space is a NamedTuple of arrays. For its type these kernels are regis
     search may stop there: any value above ``enough`` is an answer.
 ``enter(space, x, u, t) -> float``
     The first parameter ``s >= t`` at which the line touches the space; inf where it never does.
+``around(space, x, u, back) -> (float, float)``
+    The largest open interval of the line ``x + s u`` around ``s = 0`` that is free, for a free
+    point ``x``; ``back`` is ``-u``.
+``apart(space, x, u, back) -> (float, float)``
+    The largest one that does not touch the space, for a point that does not; ends may be infinite.
 ``component(space, x) -> int``
     Which connected part of the space holds ``x``; 0 where it is not free. No path leads from one
     part to another. A space that does not know its parts gives all free points the same number.
@@ -29,7 +34,7 @@ from functools import cache
 import math
 from typing import Any, NamedTuple
 
-from hnr_planner.core.kernels import compiled_apart, interpreted, kernel
+from hnr_planner.core.kernels import compiled_apart, INLINED, interpreted, kernel
 from numba.core.dispatcher import Dispatcher
 from numba.extending import overload
 import numpy as np
@@ -55,6 +60,16 @@ def enter(space: Any, x: Any, u: Any, t: float) -> float:
     return interpreted(_PRIMITIVES[type(space)].enter)(space, x, u, t)
 
 
+def around(space: Any, x: Any, u: Any, back: Any) -> tuple[float, float]:
+    """Return the largest free interval of the line ``x + s u`` around ``s = 0``."""
+    return interpreted(_PRIMITIVES[type(space)].around)(space, x, u, back)
+
+
+def apart(space: Any, x: Any, u: Any, back: Any) -> tuple[float, float]:
+    """Return the largest interval around ``s = 0`` that does not touch ``space``."""
+    return interpreted(_PRIMITIVES[type(space)].apart)(space, x, u, back)
+
+
 def component(space: Any, x: Any) -> int:
     """Return the number of the connected part of ``space`` that holds ``x``; 0 for none."""
     return interpreted(_PRIMITIVES[type(space)].component)(space, x)
@@ -76,40 +91,63 @@ def _own(function: Dispatcher, space_type: Any) -> Dispatcher:
     return compiled_apart(function)
 
 
-@overload(contains)
+@overload(contains, jit_options=INLINED)
 def _compiled_contains(space, x):
     compiled = _own(_PRIMITIVES[space.instance_class].contains, space)
     return lambda space, x: compiled(space, x)
 
 
-@overload(touches)
+@overload(touches, jit_options=INLINED)
 def _compiled_touches(space, x):
     compiled = _own(_PRIMITIVES[space.instance_class].touches, space)
     return lambda space, x: compiled(space, x)
 
 
-@overload(leave)
+@overload(leave, jit_options=INLINED)
 def _compiled_leave(space, x, u, t, enough):
     compiled = _own(_PRIMITIVES[space.instance_class].leave, space)
     return lambda space, x, u, t, enough: compiled(space, x, u, t, enough)
 
 
-@overload(enter)
+@overload(enter, jit_options=INLINED)
 def _compiled_enter(space, x, u, t):
     compiled = _own(_PRIMITIVES[space.instance_class].enter, space)
     return lambda space, x, u, t: compiled(space, x, u, t)
 
 
-@overload(component)
+@overload(around, jit_options=INLINED)
+def _compiled_around(space, x, u, back):
+    compiled = _own(_PRIMITIVES[space.instance_class].around, space)
+    return lambda space, x, u, back: compiled(space, x, u, back)
+
+
+@overload(apart, jit_options=INLINED)
+def _compiled_apart(space, x, u, back):
+    compiled = _own(_PRIMITIVES[space.instance_class].apart, space)
+    return lambda space, x, u, back: compiled(space, x, u, back)
+
+
+@overload(component, jit_options=INLINED)
 def _compiled_component(space, x):
     compiled = _own(_PRIMITIVES[space.instance_class].component, space)
     return lambda space, x: compiled(space, x)
 
 
-@overload(sees)
+@overload(sees, jit_options=INLINED)
 def _compiled_sees(space, a, b):
     compiled = _own(_PRIMITIVES[space.instance_class].sees, space)
     return lambda space, a, b: compiled(space, a, b)
+
+
+@kernel
+def around_by_leaving(space, x, u, back):
+    """Leave the space both ways: ``around`` for any space."""
+    return -leave(space, x, back, 0.0, math.inf), leave(space, x, u, 0.0, math.inf)
+
+
+@kernel
+def _apart_by_entering(space, x, u, back):
+    return -enter(space, x, back, 0.0), enter(space, x, u, 0.0)
 
 
 @kernel
@@ -134,6 +172,8 @@ class Primitives(NamedTuple):
     enter: Dispatcher
     component: Dispatcher = _one_part
     sees: Dispatcher = _sees_by_leaving
+    around: Dispatcher = around_by_leaving
+    apart: Dispatcher = _apart_by_entering
 
 
 _PRIMITIVES: dict[type, Primitives] = {}
@@ -182,7 +222,7 @@ def chord(space, x, u):
     """Return the ends of the largest free interval of ``x + s u`` around ``s = 0``."""
     if not contains(space, x):
         return 0.0, 0.0
-    return -leave(space, x, -u, 0.0, math.inf), leave(space, x, u, 0.0, math.inf)
+    return around(space, x, u, -u)
 
 
 @kernel

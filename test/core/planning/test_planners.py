@@ -7,7 +7,7 @@ from test.core.planning.searches import start_search
 from test.laws import maps
 
 from hnr_planner.core import ALGORITHMS, GridSpace, plan, PlannerStatus, RRT
-from hnr_planner.core.streams import stream, uniform
+from hnr_planner.core.streams import normal, stream, uniform
 from hnr_planner.maps import spiral
 import numpy as np
 import pytest
@@ -116,8 +116,8 @@ def test_hit_and_run_is_a_uniform_direction_and_a_uniform_point_of_its_chord():
     rng = stream(11)
     x = np.array([1.5, 1.5])
     for sample in search.samples[1:]:
-        angle = 2 * math.pi * uniform(rng)
-        u = np.array([math.cos(angle), math.sin(angle)])
+        u = np.array([normal(rng), normal(rng)])
+        u /= np.hypot(*u)
         lower, upper = map(float, chord_by_search(blocked, x - 1.0, u))
         x = x + (lower + (upper - lower) * uniform(rng)) * u
         np.testing.assert_allclose(sample, x, atol=1e-9)

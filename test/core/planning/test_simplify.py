@@ -64,12 +64,12 @@ def test_a_chain_of_sixty_thousand_vertices_becomes_a_hundred():
     cells = np.argwhere(space.largest_component())
     ends = space.cell_centres(*cells[[0, -1]].T)
     path = plan(
-        space, *ends, algorithm='hit_and_run', seed=0, time_limit=60.0, simplify=False
+        space, *ends, algorithm='hit_and_run', seed=3, time_limit=60.0, simplify=False
     ).path
     assert len(path) > 60_000
     shorter = simplify(space, path, seed=0)
     assert len(shorter) < 150
-    assert path_length(shorter) < 1000
+    assert path_length(shorter) < 2.0 * np.linalg.norm(ends[1] - ends[0])
     assert path_collisions(shorter, blocked, 1.0) == []
 
 
