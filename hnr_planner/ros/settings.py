@@ -7,9 +7,11 @@ with a frozen copy of it, and the documented configuration is held to it.
 
 import dataclasses
 from dataclasses import dataclass
+import math
 from typing import Any
 
 from hnr_planner.core import ALGORITHMS, HnrError, WALKS
+from hnr_planner.core.systems import DoubleIntegrator
 
 LARGEST_INT = 2**31 - 1
 
@@ -92,6 +94,30 @@ class Settings:
         's',
         lower=0.0,
         upper=3600.0,
+    )
+    max_acceleration: float = _setting(
+        1.0,
+        'Largest acceleration of a robot with inertia, for the services ~/plan_kinodynamic_...',
+        'm/s^2',
+        lower=0.001,
+        upper=1000.0,
+    )
+    max_speed: float = _setting(
+        1.0, 'Largest speed of a robot with inertia.', 'm/s', lower=0.001, upper=1000.0
+    )
+    goal_speed: float = _setting(
+        0.0,
+        'Largest speed of a robot with inertia at the goal; -1: any. 0, at rest, only '
+        '~/plan_kinodynamic_connect can do; for the others it means any.',
+        'm/s',
+        lower=-1.0,
+        upper=1000.0,
+    )
+    boundary: str = _setting(
+        'forbidden',
+        'What an obstacle does in ~/plan_kinodynamic_hit_and_run and _rrt: it must not be met, or '
+        'it stops the robot, which goes on from there.',
+        choices=('forbidden', 'inelastic'),
     )
     seed: int = _setting(
         -1,
@@ -177,6 +203,10 @@ class Settings:
                 f'pose_spacing must be -1 (the resolution of the map), 0 (vertices only) or '
                 f'positive, got {self.pose_spacing!r}'
             )
+        if -1.0 < self.goal_speed < 0.0:
+            raise SettingsError(
+                f'goal_speed must be -1 (any), 0 (at rest) or positive, got {self.goal_speed!r}'
+            )
 
     @property
     def space_arguments(self) -> dict[str, Any]:
@@ -186,6 +216,19 @@ class Settings:
             'unknown': self.unknown,
             'occupied_threshold': self.occupied_threshold,
         }
+
+    def motion_arguments(self, algorithm: str) -> dict[str, Any]:
+        """Return what `plan` takes besides for a robot with inertia."""
+        system = DoubleIntegrator(
+            dim=2, max_acceleration=self.max_acceleration, max_speed=self.max_speed
+        )
+        stops = algorithm == 'kinodynamic_connect'
+        unbounded = self.goal_speed < 0.0 or (self.goal_speed == 0.0 and not stops)
+        arguments = {
+            'system': system,
+            'goal_speed': math.inf if unbounded else self.goal_speed,
+        }
+        return arguments if stops else {**arguments, 'boundary': self.boundary}
 
     @property
     def plan_arguments(self) -> dict[str, Any]:

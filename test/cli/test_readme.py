@@ -54,10 +54,11 @@ def test_commands_run_and_write_their_files(block: str, clone: Path) -> None:
         assert len((clone / name).read_text().splitlines()) == 5001
 
 
-@pytest.mark.parametrize('block', blocks('python'), ids=['plan', 'sample'])
+@pytest.mark.parametrize('block', blocks('python'), ids=['plan', 'drive', 'sample'])
 def test_python_runs(block: str, clone: Path) -> None:
     out = run([sys.executable, '-c', block], clone)
-    assert out.startswith(('SOLVED path of', '(4, 1000, 2)\nconverged: R-hat at most 1.0'))
+    begins = 'SOLVED path of', 'SOLVED trajectory of', '(4, 1000, 2)\nconverged: R-hat at most 1.0'
+    assert out.startswith(begins)
 
 
 def test_links_lead_somewhere() -> None:
