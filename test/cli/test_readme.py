@@ -71,6 +71,12 @@ def test_links_lead_somewhere() -> None:
     assert broken == []
 
 
+@pytest.mark.parametrize('page', sorted((ROOT / 'docs').glob('*.md')), ids=lambda page: page.stem)
+def test_links_of_the_pages_lead_somewhere(page: Path) -> None:
+    links = re.findall(r'\]\(([^)#]+)[^)]*\)', page.read_text())
+    assert [link for link in links if not (page.parent / link).exists()] == []
+
+
 def test_make_targets_exist() -> None:
     makefile = (ROOT / 'Makefile').read_text()
     targets = set(re.findall(r'make ([a-z]+)', README))
