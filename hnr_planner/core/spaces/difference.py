@@ -8,6 +8,7 @@ from hnr_planner.core.errors import SpaceError
 from hnr_planner.core.kernels import kernel
 from hnr_planner.core.spaces.composed import check_parts, check_same_dim
 from hnr_planner.core.spaces.primitives import (
+    component,
     contains,
     enter,
     leave,
@@ -69,8 +70,9 @@ class DifferenceSpace(Space):
 
     @property
     def typical_clearance(self) -> float:
-        """That of the base, cut down by what lies in between."""
-        return self.base.typical_clearance / (1.0 + len(self.removed)) ** (1.0 / self.dim)
+        """That of the base, in the caller's units, cut down by what lies in between."""
+        of_base = self.base.typical_clearance * self.base.scale
+        return of_base / (1.0 + len(self.removed)) ** (1.0 / self.dim)
 
     def why_not_free(self, point: ArrayLike) -> str:
         """Say in words why ``point`` (dim,) is not free."""
@@ -111,4 +113,10 @@ def _enter(difference, x, u, t):
     return s
 
 
-register(DifferenceData, Primitives(_contains, _touches, _leave, _enter))
+@kernel
+def _component(difference, x):
+    """Return the part of the base: what is removed may cut it into more, but joins none."""
+    return component(difference.base, x) if _contains(difference, x) else 0
+
+
+register(DifferenceData, Primitives(_contains, _touches, _leave, _enter, _component))

@@ -8,6 +8,7 @@ from hnr_planner.core.checks import check_point, Floats
 from hnr_planner.core.kernels import kernel
 from hnr_planner.core.spaces.composed import check_parts
 from hnr_planner.core.spaces.primitives import (
+    component,
     contains,
     enter,
     leave,
@@ -18,6 +19,9 @@ from hnr_planner.core.spaces.primitives import (
 from hnr_planner.core.spaces.space import Space
 import numpy as np
 from numpy.typing import ArrayLike
+
+#: No factor has more parts than this.
+PARTS_MAX = 2**31
 
 
 class ProductData(NamedTuple):
@@ -139,4 +143,12 @@ def _enter(product, x, u, t):
     return s
 
 
-register(ProductData, Primitives(_contains, _touches, _leave, _enter))
+@kernel
+def _component(product, x):
+    """Return a number for each pair of parts."""
+    k = product.split
+    one, other = component(product.one, x[:k]), component(product.other, x[k:])
+    return one + PARTS_MAX * (other - 1) if one > 0 and other > 0 else 0
+
+
+register(ProductData, Primitives(_contains, _touches, _leave, _enter, _component))

@@ -75,6 +75,11 @@ class UnionSpace(Space):
         lower, upper = zip(*(part.bounds for part in self.parts), strict=True)
         return np.min(lower, axis=0), np.max(upper, axis=0)
 
+    @property
+    def typical_clearance(self) -> float:
+        """Mean of those of the parts, in the caller's units."""
+        return float(np.mean([part.typical_clearance * part.scale for part in self.parts]))
+
     def covers_box(self, lower: Floats, upper: Floats) -> bool:
         """Say whether one of the parts is known to."""
         return any(part.covers_box(lower, upper) for part in self.parts)
