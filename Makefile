@@ -26,10 +26,10 @@ help:
 	@echo 'make test                  run the tests (ARGS="-k name -x" goes to pytest)'
 	@echo 'make soak                  the nodes under load and faults, for a quarter of an hour'
 	@echo 'make check                 format, lint, types, spelling, then the tests'
-	@echo 'make bench                 side by side with OMPL and grid search, a quarter of an hour'
-	@echo 'make bench QUICK=1         the same in a minute or two, for a look'
+	@echo 'make bench                 side by side with OMPL, grid search and hopsy, half an hour'
+	@echo 'make bench QUICK=1         the same in some minutes, for a look'
 	@echo 'make figures               the experiments of docs/ again, about an hour'
-	@echo 'make figures RUNS=5        the same in a minute or two, for a look'
+	@echo 'make figures RUNS=5        the same in some minutes, for a look'
 	@echo 'make format                put the sources into shape'
 	@echo 'make clean                 remove .venv and all that was built'
 	@echo
@@ -96,7 +96,7 @@ lint: install
 # A competitor that has no wheel for this machine is missed, not fatal: the benchmark says so.
 .PHONY: bench
 bench: install
-	@for competitor in 'ompl>=2.0' 'nano-astar>=0.1'; do \
+	@for competitor in 'ompl>=2.0' 'nano-astar>=0.1' 'hopsy>=1.7'; do \
 	  $(VENV) -m pip install --disable-pip-version-check --quiet "$$competitor" || true; \
 	done
 	$(VENV) -m benchmarks $(if $(QUICK),--quick)

@@ -8,8 +8,6 @@ HNR_MAPS names a folder of further maps. The full run writes ``benchmarks/result
 from __future__ import annotations
 
 import argparse
-from collections.abc import Iterator
-from contextlib import contextmanager
 import os
 from pathlib import Path
 import time
@@ -21,12 +19,14 @@ from benchmarks.every_problem import every_problem
 from benchmarks.first_path import first_path
 from benchmarks.kinodynamic import kinodynamic
 from benchmarks.picture import draw
+from benchmarks.pinned import on_one_core
 from benchmarks.problems import missing_maps, Problem, problems
 from benchmarks.progress import say
 from benchmarks.properties import properties
 from benchmarks.race import FULL, QUICK, race, Standing
 from benchmarks.report import missing_words, report
 from benchmarks.roadmap import roadmap
+from benchmarks.sampling import sampling
 from benchmarks.sections import Bench, SectionOf, verdict_table
 from benchmarks.short_path import short_path
 from benchmarks.success import success
@@ -40,6 +40,7 @@ SECTIONS: tuple[SectionOf, ...] = (
     short_path,
     success,
     roadmap,
+    sampling,
     clearance,
     kinodynamic,
     answers,
@@ -56,7 +57,7 @@ def main() -> None:
     began = time.perf_counter()
     warm_up()
     courses = problems(quick)
-    with _on_one_core():
+    with on_one_core():
         taking_part, missing = lineup()
         missing += missing_maps()
         if missing:
@@ -83,15 +84,6 @@ def _race(problem: Problem, taking_part: list[Competitor], quick: bool) -> Stand
         for complaint in entry.judge.complaints[:1]:
             say(f'{entry.competitor.label}: {complaint}')
     return standing
-
-
-@contextmanager
-def _on_one_core() -> Iterator[None]:
-    """Let everybody, programs that are started here too, run on one core."""
-    cores = os.sched_getaffinity(0)
-    os.sched_setaffinity(0, {max(cores)})
-    yield
-    os.sched_setaffinity(0, cores)
 
 
 def _places(quick: bool) -> tuple[Path, Path]:

@@ -25,7 +25,7 @@ STEP = 0.1
 OMPL = ('RRT', 'SST', 'KPIECE1', 'EST')
 #: Time for a first trajectory, and for a short one [s].
 LIMIT, LONG = 5.0, 1.0
-RUNS, RUNS_QUICK = 15, 2
+RUNS, RUNS_QUICK = 7, 2
 #: What is asked: the time of the fastest of OMPL's, and the duration of SST's.
 HALF = 0.5
 

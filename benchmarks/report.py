@@ -68,6 +68,7 @@ def _machine(seconds: float) -> str:
             ('OMPL', ompl.native_version),
             ('OMPL PyPI', ompl.wheel_version),
             ('nano-astar', lambda: metadata.version('nano-astar')),
+            ('hopsy', lambda: metadata.version('hopsy')),
         )
         if (found := _version(ask))
     ]

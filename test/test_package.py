@@ -30,6 +30,7 @@ ROOMS = (
     'hnr_planner.core.checks',
     'hnr_planner.core.kernels',
     'hnr_planner.core.borrowed',
+    'hnr_planner.core.dispatch',
     'hnr_planner.core.streams',
     'hnr_planner.core.lengths',
     'hnr_planner.core.trees',

@@ -84,7 +84,7 @@ def bounded(
 
 number = bounded(float)
 length = bounded(float, least=0)
-duration = bounded(float, above=0)
+positive = bounded(float, above=0)
 whole = bounded(int, least=0)
 count = bounded(int, least=1, most=10**9)
 
@@ -178,7 +178,7 @@ def compile_kernels() -> None:
     """Have every kernel ready before anything is timed; say so when that takes long."""
     from hnr_planner.core import warm_up
 
-    note = 'compiling, once after each installation: up to a minute ...'
+    note = 'compiling, once after each installation: a minute or two ...'
     timer = threading.Timer(PATIENCE, print, [note], {'file': sys.stderr, 'flush': True})
     timer.daemon = True
     timer.start()

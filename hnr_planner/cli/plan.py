@@ -12,13 +12,13 @@ from hnr_planner.cli.arguments import (
     add_map_arguments,
     compile_kernels,
     count,
-    duration,
     keep_map_files,
     length,
     number,
     open_map,
     page,
     picture,
+    positive,
     whole,
 )
 
@@ -78,7 +78,7 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
     )
     parser.add_argument(
         '--time-limit',
-        type=duration,
+        type=positive,
         default=1.0,
         metavar='S',
         help='the longest that all of it may take [s]; default 1',

@@ -18,6 +18,7 @@ from hnr_planner.cli.arguments import (
     open_map,
     output_file,
     picture,
+    positive,
     whole,
 )
 
@@ -25,7 +26,8 @@ if TYPE_CHECKING:
     from hnr_planner.core import GridSpace
     from numpy.typing import NDArray
 
-WALK_NAMES = ('hit_and_run', 'coordinate_hit_and_run')  # those of the core; see plan.py
+# Those of the core; see plan.py.
+WALK_NAMES = ('hit_and_run', 'coordinate_hit_and_run', 'ball_walk')
 EPILOG = """\
 example:
   python -m hnr_planner sample office.yaml --n 1000 --csv points.csv --plot points.png
@@ -61,6 +63,12 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
         choices=WALK_NAMES,
         default='hit_and_run',
         help='the random walk; default hit_and_run',
+    )
+    parser.add_argument(
+        '--radius',
+        type=positive,
+        metavar='R',
+        help='longest step of ball_walk [m]; default what suits the map',
     )
     parser.add_argument(
         '--thin',
@@ -139,10 +147,13 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _draw(arguments: argparse.Namespace, space: GridSpace, seed: int) -> NDArray:
     """Return the chains of points (k, n, 2) that are asked for."""
-    from hnr_planner.core import sample, sample_free_space, SpaceError
+    from hnr_planner.core import BallWalk, sample, sample_free_space, SpaceError
 
+    if arguments.radius is not None and arguments.walk != BallWalk.name:
+        raise BadInputError(f'--radius is for --walk {BallWalk.name} only')
+    walk = BallWalk(arguments.radius) if arguments.walk == BallWalk.name else arguments.walk
     settings = {
-        'walk': arguments.walk,
+        'walk': walk,
         'n_chains': arguments.chains,
         'thin': arguments.thin,
         'seed': seed,

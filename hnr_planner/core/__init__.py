@@ -6,7 +6,7 @@ The algorithms, free of ROS: spaces, walks on them, and planners.
 <PlannerStatus.SOLVED: 'a path was found'>
 """
 
-from hnr_planner.core.errors import Cancelled, HnrError, RequestError, SpaceError
+from hnr_planner.core.errors import Cancelled, HnrError, RequestError, SpaceError, StuckError
 from hnr_planner.core.planning.algorithms import ALGORITHMS
 from hnr_planner.core.planning.hit_and_run import HitAndRun
 from hnr_planner.core.planning.kinodynamic.algorithms import KINODYNAMIC_ALGORITHMS
@@ -15,6 +15,7 @@ from hnr_planner.core.planning.result import FirstSolution, PlannerStatus, PlanR
 from hnr_planner.core.planning.roadmap.roadmap import Roadmap
 from hnr_planner.core.planning.rrt import RRT
 from hnr_planner.core.planning.simplify import simplify
+from hnr_planner.core.sampling.chains import begin_chains, Chains, walk_on
 from hnr_planner.core.sampling.diagnostics import (
     diagnose,
     Diagnosis,
@@ -24,7 +25,13 @@ from hnr_planner.core.sampling.diagnostics import (
     TotalVariation,
 )
 from hnr_planner.core.sampling.free_space import FreeSpaceDraws, sample_free_space
-from hnr_planner.core.sampling.sample import sample, WALKS
+from hnr_planner.core.sampling.sample import sample
+from hnr_planner.core.sampling.steps import (
+    BallWalk,
+    CoordinateHitAndRunWalk,
+    HitAndRunWalk,
+    WALKS,
+)
 from hnr_planner.core.spaces import (
     BallSpace,
     BoxSpace,
@@ -48,15 +55,19 @@ __all__ = [
     'RRT',
     'WALKS',
     'BallSpace',
+    'BallWalk',
     'BoxSpace',
     'Cancelled',
+    'Chains',
     'Chord',
+    'CoordinateHitAndRunWalk',
     'Diagnosis',
     'DifferenceSpace',
     'FirstSolution',
     'FreeSpaceDraws',
     'GridSpace',
     'HitAndRun',
+    'HitAndRunWalk',
     'HnrError',
     'OracleError',
     'OracleSpace',
@@ -70,8 +81,10 @@ __all__ = [
     'ShearedSpace',
     'Space',
     'SpaceError',
+    'StuckError',
     'TotalVariation',
     'UnionSpace',
+    'begin_chains',
     'diagnose',
     'plan',
     'relaxation_time',
@@ -80,5 +93,6 @@ __all__ = [
     'simplify',
     'to_arviz',
     'total_variation',
+    'walk_on',
     'warm_up',
 ]

@@ -15,3 +15,7 @@ class RequestError(HnrError, ValueError):
 
 class Cancelled(HnrError):
     """Work that has no answer without its end was cancelled."""
+
+
+class StuckError(HnrError, RuntimeError):
+    """A chain of a random walk does not move any more."""

@@ -29,6 +29,8 @@ from numba.core.dispatcher import Dispatcher
 
 CORE = Path(__file__).resolve().parent
 OPTIONS: dict[str, Any] = {'nogil': True, 'error_model': 'numpy'}
+#: For what is put in wherever it is called.
+INLINED: Any = {'forceinline': True}
 
 
 def source_digest(folder: Path) -> str:
@@ -84,12 +86,13 @@ def inlined(function: Callable[..., Any]) -> Dispatcher:
     A call hands on every field of every array: for the small parts of an inner loop that is more
     work than they do themselves.
     """
-    return kernel(function, forceinline=True)
+    return kernel(function, **INLINED)
 
 
-def compiled_apart(function: Dispatcher) -> Dispatcher:
+def recompiled(function: Dispatcher) -> Dispatcher:
     """Return a kernel's function as another kernel, whose code is kept with its callers' only."""
-    return njit(**OPTIONS)(function.py_func)
+    inline = INLINED if function.targetoptions.get('forceinline') else {}
+    return njit(**OPTIONS, **inline)(function.py_func)
 
 
 @cache

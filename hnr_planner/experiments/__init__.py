@@ -11,7 +11,7 @@ from importlib import import_module
 from hnr_planner.experiments.experiment import Experiment
 
 #: Every experiment, in the order of ``docs/README.md``.
-NAMES = ('spiral', 'clouds', 'safety', 'theory')
+NAMES = ('spiral', 'clouds', 'corridor', 'safety', 'theory')
 
 
 def load(name: str) -> Experiment:

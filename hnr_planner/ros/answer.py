@@ -11,7 +11,13 @@ import math
 import threading
 import time
 
-from hnr_planner.core import HnrError, plan, PlannerStatus, PlanResult
+from hnr_planner.core import (
+    HnrError,
+    KINODYNAMIC_ALGORITHMS,
+    plan,
+    PlannerStatus,
+    PlanResult,
+)
 from hnr_planner.ros.escape import way_out
 from hnr_planner.ros.legs import joined
 from hnr_planner.ros.map_store import MapSnapshot
@@ -19,6 +25,7 @@ from hnr_planner.ros.outcomes import Outcome, Refusal
 from hnr_planner.ros.path_validity import first_blocked_pose
 from hnr_planner.ros.requests import check_request, Pose, Report, Request
 from hnr_planner.ros.settings import Settings
+from hnr_planner.ros.trajectory_messages import as_path
 import numpy as np
 
 NewestMap = Callable[[], MapSnapshot]
@@ -149,7 +156,8 @@ class _Job:
         start = request.start.point
         result, why = self._plan_from(start, request, snapshot)
         escape, radius = 0.0, self.settings.escape_radius
-        if result.status is PlannerStatus.INVALID_START and radius > 0.0:
+        escapes = radius > 0.0 and request.algorithm not in KINODYNAMIC_ALGORITHMS[1:]
+        if result.status is PlannerStatus.INVALID_START and escapes:
             outside = way_out(snapshot, start, request.goal.point, radius)
             if outside is None:
                 why += f'; no straight way of {radius:g} m at most leads out of there'
@@ -172,15 +180,22 @@ class _Job:
         """
         goal = request.goal.point
         arguments = self.settings.plan_arguments | {'algorithm': request.algorithm}
+        begin = np.array(start)
+        if request.algorithm in KINODYNAMIC_ALGORITHMS[1:]:
+            arguments |= self.settings.motion_arguments(request.algorithm)
+            begin = np.append(begin, (0.0, 0.0))  # at rest
 
         def search(end: tuple[float, float] | np.ndarray) -> PlanResult:
             left = max(self.deadline - time.monotonic(), SHORTEST_TIME)
             try:
-                return plan(
-                    snapshot.space, start, end, time_limit=left, cancel=self.cancel, **arguments
+                result = plan(
+                    snapshot.space, begin, end, time_limit=left, cancel=self.cancel, **arguments
                 )
             except HnrError as error:
                 raise Refusal(Outcome.BAD_REQUEST, str(error)) from error
+            if result.trajectory is None:
+                return result
+            return replace(result, path=as_path(result.trajectory, snapshot.space))
 
         result = search(goal)
         why = result.message
@@ -192,7 +207,8 @@ class _Job:
         if nearest is None:
             return result, f'{why}; nothing within {request.tolerance:g} m of it can be reached'
         # The end has been moved already: a region around it would move it once more.
-        arguments['goal_radius'] = 0.0
+        if 'boundary' not in arguments:
+            arguments['goal_radius'] = 0.0
         result = search(nearest)
         offset = math.dist(nearest, goal)
         return result, f'{result.message}; the goal was moved by {offset:.4g} m because {why}'

@@ -2,6 +2,7 @@
 
 from functools import partial
 
+from hnr_planner.core import KINODYNAMIC_ALGORITHMS
 from hnr_planner.ros.answer import only_same_frame
 from hnr_planner.ros.bond import NodeBond
 from hnr_planner.ros.callback_group import BoundedCallbackGroup
@@ -28,7 +29,12 @@ MOST_SEARCHES = 32
 THREADS = MOST_SEARCHES + 4
 """Threads for callbacks: searches never take the last ones, those of ~/cancel and diagnostics."""
 WAITING_REQUESTS = QoSProfile(depth=1000)
-SERVICES = {'plan': None, 'plan_hit_and_run': 'hit_and_run', 'plan_rrt': 'rrt'}
+SERVICES = {
+    'plan': None,
+    'plan_hit_and_run': 'hit_and_run',
+    'plan_rrt': 'rrt',
+    **{f'plan_{name}': name for name in KINODYNAMIC_ALGORITHMS if name != 'auto'},
+}
 """Services that plan, and the algorithm of each; None is the one of the parameter."""
 
 

@@ -22,6 +22,7 @@ class Outcome(enum.Enum):
     UNREACHABLE = enum.auto()
     TIMEOUT = enum.auto()
     ITERATION_LIMIT = enum.auto()
+    INEVITABLE_COLLISION = enum.auto()
     CANCELLED = enum.auto()
     INTERNAL_ERROR = enum.auto()
 

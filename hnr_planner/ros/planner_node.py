@@ -44,7 +44,7 @@ def main() -> NoReturn:
 
 def _prepare(logger: RcutilsLogger) -> None:
     """Compile everything that a request needs, or load it from the cache."""
-    logger.info('preparing: loading or compiling the planners (up to a minute the first time)')
+    logger.info('preparing: loading or compiling the planners (a minute or two the first time)')
     with _progress(logger):
         warm_up()
 

@@ -13,6 +13,7 @@ from hnr_planner.ros.path_messages import serialised_path
 from hnr_planner.ros.requests import Report, Request
 from hnr_planner.ros.sample_messages import draws_message, samples_message
 from hnr_planner.ros.sampling import SampleReport
+from hnr_planner.ros.trajectory_messages import trajectory_message
 from nav_msgs.msg import Path
 import numpy as np
 from numpy.typing import NDArray
@@ -23,6 +24,7 @@ from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.time import Time
 from sensor_msgs.msg import PointCloud2
 from std_msgs.msg import Header
+from trajectory_msgs.msg import MultiDOFJointTrajectory
 from visualization_msgs.msg import MarkerArray
 
 OUTCOMES_KEPT = 100
@@ -108,6 +110,9 @@ class Publications:
         self._stamps = _Stamps(node.get_clock())
         self._outcome = node.create_publisher(DiagnosticArray, '~/outcome', latched(OUTCOMES_KEPT))
         self._path = node.create_publisher(Path, '~/path', latched(1))
+        self._trajectory = node.create_publisher(
+            MultiDOFJointTrajectory, '~/trajectory', latched(1)
+        )
         self._samples = node.create_publisher(PointCloud2, '~/samples', latched(1))
         self._markers = node.create_publisher(MarkerArray, '~/markers', latched(1))
         self._pictures = True
@@ -145,7 +150,13 @@ class Publications:
         """Publish what still waits, and end the thread once subscribers have it."""
         self._wake.put(False)
         self._thread.join()
-        for publisher in (self._outcome, self._path, self._samples, self._markers):
+        for publisher in (
+            self._outcome,
+            self._path,
+            self._trajectory,
+            self._samples,
+            self._markers,
+        ):
             publisher.wait_for_all_acked(LONGEST_DELIVERY)
 
     def _publish_all(self) -> None:
@@ -183,6 +194,7 @@ class Publications:
             self._samples.publish(draws_message(result.report, header))
         elif isinstance(result, PathResult):
             self._path.publish(serialised_path(result.poses, header))
+            self._trajectory.publish(trajectory_message(result.report, header))
             if self._pictures and len(self._waiting) <= LONGEST_BACKLOG:
                 samples = result.report.result
                 self._samples.publish(samples_message(samples, result.samples_max, header))

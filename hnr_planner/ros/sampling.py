@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import threading
 import time
 
-from hnr_planner.core import Cancelled, FreeSpaceDraws, sample_free_space, SpaceError
+from hnr_planner.core import Cancelled, FreeSpaceDraws, sample_free_space, SpaceError, StuckError
 from hnr_planner.ros.map_store import MapSnapshot
 from hnr_planner.ros.outcomes import Outcome, Refusal
 from hnr_planner.ros.settings import Settings
@@ -114,6 +114,8 @@ def _draw(settings: Settings, snapshot: MapSnapshot, ending: _Ending) -> FreeSpa
         return sample_free_space(snapshot.space, cancel=ending, **settings.sample_arguments)
     except SpaceError as error:
         raise Refusal(Outcome.BAD_REQUEST, f'nothing can be drawn of this map: {error}') from error
+    except StuckError as error:
+        raise Refusal(Outcome.BAD_REQUEST, str(error)) from error
     except Cancelled as error:
         if ending.cancel.is_set():
             raise Refusal(Outcome.CANCELLED, 'the sampling was cancelled') from error

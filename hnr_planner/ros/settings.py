@@ -7,9 +7,11 @@ with a frozen copy of it, and the documented configuration is held to it.
 
 import dataclasses
 from dataclasses import dataclass
+import math
 from typing import Any
 
-from hnr_planner.core import ALGORITHMS, HnrError, WALKS
+from hnr_planner.core import ALGORITHMS, BallWalk, HnrError, WALKS
+from hnr_planner.core.systems import DoubleIntegrator
 
 LARGEST_INT = 2**31 - 1
 
@@ -93,6 +95,30 @@ class Settings:
         lower=0.0,
         upper=3600.0,
     )
+    max_acceleration: float = _setting(
+        1.0,
+        'Largest acceleration of a robot with inertia, for the services ~/plan_kinodynamic_...',
+        'm/s^2',
+        lower=0.001,
+        upper=1000.0,
+    )
+    max_speed: float = _setting(
+        1.0, 'Largest speed of a robot with inertia.', 'm/s', lower=0.001, upper=1000.0
+    )
+    goal_speed: float = _setting(
+        0.0,
+        'Largest speed of a robot with inertia at the goal; -1: any. 0, at rest, only '
+        '~/plan_kinodynamic_connect can do; for the others it means any.',
+        'm/s',
+        lower=-1.0,
+        upper=1000.0,
+    )
+    boundary: str = _setting(
+        'forbidden',
+        'What an obstacle does in ~/plan_kinodynamic_hit_and_run and _rrt: it must not be met, or '
+        'it stops the robot, which goes on from there.',
+        choices=('forbidden', 'inelastic'),
+    )
     seed: int = _setting(
         -1,
         'Seed of every request; -1: a fresh one for each request. The outcome states it.',
@@ -146,6 +172,13 @@ class Settings:
         upper=1_000_000,
     )
     sample_walk: str = _setting('hit_and_run', 'Random walk of ~/sample.', choices=WALKS)
+    sample_radius: float = _setting(
+        0.0,
+        'Longest step of ball_walk; 0: what suits the map.',
+        'm',
+        lower=0.0,
+        upper=1000.0,
+    )
     sample_thin: int = _setting(
         1,
         'Steps of the walk from one draw of ~/sample to the next: with more, draws depend less on '
@@ -177,6 +210,10 @@ class Settings:
                 f'pose_spacing must be -1 (the resolution of the map), 0 (vertices only) or '
                 f'positive, got {self.pose_spacing!r}'
             )
+        if -1.0 < self.goal_speed < 0.0:
+            raise SettingsError(
+                f'goal_speed must be -1 (any), 0 (at rest) or positive, got {self.goal_speed!r}'
+            )
 
     @property
     def space_arguments(self) -> dict[str, Any]:
@@ -186,6 +223,19 @@ class Settings:
             'unknown': self.unknown,
             'occupied_threshold': self.occupied_threshold,
         }
+
+    def motion_arguments(self, algorithm: str) -> dict[str, Any]:
+        """Return what `plan` takes besides for a robot with inertia."""
+        system = DoubleIntegrator(
+            dim=2, max_acceleration=self.max_acceleration, max_speed=self.max_speed
+        )
+        stops = algorithm == 'kinodynamic_connect'
+        unbounded = self.goal_speed < 0.0 or (self.goal_speed == 0.0 and not stops)
+        arguments = {
+            'system': system,
+            'goal_speed': math.inf if unbounded else self.goal_speed,
+        }
+        return arguments if stops else {**arguments, 'boundary': self.boundary}
 
     @property
     def plan_arguments(self) -> dict[str, Any]:
@@ -201,9 +251,10 @@ class Settings:
     @property
     def sample_arguments(self) -> dict[str, Any]:
         """Return what `sample_free_space` takes from the settings."""
+        ball = BallWalk(self.sample_radius or None)
         return {
             'n_draws': self.sample_count,
-            'walk': self.sample_walk,
+            'walk': ball if self.sample_walk == ball.name else self.sample_walk,
             'thin': self.sample_thin,
             'seed': None if self.seed < 0 else self.seed,
         }

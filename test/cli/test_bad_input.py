@@ -40,6 +40,7 @@ CASES = {
     'points by halves': (['sample', 'MAP', '--n', '2.5'], ['--n', '2.5']),
     'no number': (['sample', 'MAP'], ['--n']),
     'unknown walk': (['sample', 'MAP', '--n', '5', '--walk', 'moon'], ['moon', 'hit_and_run']),
+    'radius of another walk': (['sample', 'MAP', '--n', '5', '--radius', '1'], ['--radius']),
     'walk from outside': (
         ['sample', 'MAP', '--n', '5', '--start', '99', '1'],
         ['99', 'outside the map'],

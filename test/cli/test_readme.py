@@ -54,10 +54,11 @@ def test_commands_run_and_write_their_files(block: str, clone: Path) -> None:
         assert len((clone / name).read_text().splitlines()) == 5001
 
 
-@pytest.mark.parametrize('block', blocks('python'), ids=['plan', 'sample'])
+@pytest.mark.parametrize('block', blocks('python'), ids=['plan', 'drive', 'sample'])
 def test_python_runs(block: str, clone: Path) -> None:
     out = run([sys.executable, '-c', block], clone)
-    assert out.startswith(('SOLVED path of', '(4, 1000, 2)\nconverged: R-hat at most 1.0'))
+    begins = 'SOLVED path of', 'SOLVED trajectory of', '(4, 1000, 6)\nconverged: R-hat at most 1.0'
+    assert out.startswith(begins)
 
 
 def test_links_lead_somewhere() -> None:
@@ -69,6 +70,12 @@ def test_links_lead_somewhere() -> None:
     }
     broken = [link for link in links if not (link in headings or (ROOT / link).exists())]
     assert broken == []
+
+
+@pytest.mark.parametrize('page', sorted((ROOT / 'docs').glob('*.md')), ids=lambda page: page.stem)
+def test_links_of_the_pages_lead_somewhere(page: Path) -> None:
+    links = re.findall(r'\]\(([^)#]+)[^)]*\)', page.read_text())
+    assert [link for link in links if not (page.parent / link).exists()] == []
 
 
 def test_make_targets_exist() -> None:

@@ -14,7 +14,6 @@ from hnr_planner.core.planning import hit_and_run_connect as connect
 from hnr_planner.core.planning.hit_and_run import _walk
 from hnr_planner.core.planning.homology import islands_at
 from hnr_planner.core.planning.search import Problem
-from hnr_planner.core.sampling.sample import run_chain
 from hnr_planner.core.spaces.primitives import chord
 from hnr_planner.core.streams import stream
 import numpy as np
@@ -122,12 +121,6 @@ def test_the_chord():
     points = rng.uniform(LOWER, UPPER, (300, 2))
     for x, u in zip(points, directions, strict=True):
         assert chord(GRID.data, x, u) == interpreted(chord)(GRID.data, x, u)
-
-
-@pytest.mark.parametrize('walk', [0, 1])
-def test_the_walks(walk: int):
-    draws = np.zeros((200, 2))
-    assert_same(*both(run_chain, GRID.data, walk, PROBLEM.start, stream(5), 3, 2, draws))
 
 
 def test_hit_and_run():

@@ -19,6 +19,7 @@ ENDLESS = {'sample_count': 1_000_000, 'sample_thin': 100_000, 'time_limit': 60.0
 USUAL = {
     'robot_radius': 0.0,
     'sample_count': 1000,
+    'sample_radius': 0.0,
     'sample_thin': 1,
     'sample_walk': 'hit_and_run',
     'samples_max': 100_000,
@@ -92,6 +93,21 @@ def test_draws_are_uniform_over_every_part_of_free_space(client: Client, walk: s
     rows, columns = cells_of(points)
     without_cupboard = points[PARTS[rows, columns] == PARTS[0, 0]]
     assert over_cells(without_cupboard) < ALPHA, 'so few points of a part would be seen'
+
+
+def test_ball_walk_takes_steps_of_its_radius(client: Client) -> None:
+    client.set_parameters(sample_walk='ball_walk', sample_radius=0.25, seed=2)
+    answer = client.sample()
+    points = drawn(client, answer)
+    parents = points_in(client.stamped(client.clouds, answer))['parent']
+    steps = (points - points[parents])[parents >= 0]
+    assert 0.2 < np.hypot(*steps.T).max() < 0.25 + 1e-6
+
+
+def test_ball_walk_that_finds_no_step_says_so(client: Client) -> None:
+    client.set_parameters(sample_walk='ball_walk', sample_radius=1000.0, sample_thin=10)
+    answer = client.sample()
+    assert answer.message.startswith('BAD_REQUEST: ') and 'smaller radius' in answer.message
 
 
 def test_draws_are_free_for_the_robot(client: Client) -> None:

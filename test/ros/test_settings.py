@@ -53,6 +53,7 @@ def test_configuration_states_units_and_ranges() -> None:
         ('samples_max', -1, '0..10000000'),
         ('sample_count', 0, '1..1000000'),
         ('sample_walk', 'drunk', 'hit_and_run'),
+        ('sample_radius', -0.1, '0..1000 m'),
         ('sample_thin', 0, '1..100000'),
     ],
 )

@@ -11,9 +11,10 @@ import math
 from typing import NamedTuple
 
 from hnr_planner.core.cancellation import Event, in_parts
-from hnr_planner.core.checks import check_choice, check_count, check_seed, Floats
+from hnr_planner.core.checks import check_count, check_seed, Floats
 from hnr_planner.core.errors import SpaceError
-from hnr_planner.core.sampling.sample import run_chain, WALKS
+from hnr_planner.core.sampling.chains import new_chain, run_chain
+from hnr_planner.core.sampling.steps import make_walk, Walk
 from hnr_planner.core.spaces.grid import GridSpace
 from hnr_planner.core.streams import Stream, stream, uniform
 import numpy as np
@@ -56,7 +57,7 @@ def sample_free_space(
     space: GridSpace,
     n_draws: int,
     *,
-    walk: str = 'hit_and_run',
+    walk: str | Walk = 'hit_and_run',
     n_chains: int = 1,
     thin: int = 1,
     seed: int | None = None,
@@ -74,8 +75,8 @@ def sample_free_space(
         The set to draw from.
     n_draws : int
         Points of each chain.
-    walk : str
-        The step, one of ``WALKS``, as ``sample`` has them.
+    walk : str or Walk
+        How to step, as for ``sample``.
     n_chains : int
         Independent repetitions; each runs in a thread and with random streams of its own.
     thin : int
@@ -93,12 +94,14 @@ def sample_free_space(
         When no cell is free.
     Cancelled
         When ``cancel`` was set.
+    StuckError
+        When a walk does not move any more.
 
     """
     n_draws = check_count('n_draws', n_draws, 1)
     n_chains = check_count('n_chains', n_chains, 1)
     thin = check_count('thin', thin, 1)
-    step = WALKS.index(check_choice('walk', walk, WALKS))
+    step = make_walk(walk).compiled(space)
     seed = check_seed(seed)
     labels = space.data.labels
     free = np.flatnonzero(labels)
@@ -114,9 +117,10 @@ def sample_free_space(
         for draws in _of_each_part(parts[chain]):
             first, rng = draws[0], stream(seed, chain, int(parts[chain, draws[0]]))
             points[chain, first] = x = point_in_cell(cells[first], labels.shape, rng)
+            part = new_chain(space, x, rng)
             moved = np.empty((len(draws) - 1, space.dim))
             for some in in_parts(len(moved), cancel, max(1, STEPS_AT_ONCE // thin)):
-                run_chain(space.data, step, x, rng, 0, thin, moved[some])
+                run_chain(space, step, part, thin, moved[some])
             points[chain, draws[1:]] = moved
 
     with ThreadPoolExecutor() as pool:

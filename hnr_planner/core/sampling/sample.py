@@ -1,25 +1,10 @@
 """Uniform points of a space, by chains of a random walk."""
 
-from concurrent.futures import ThreadPoolExecutor
-
-from hnr_planner.core.borrowed import borrowed
-from hnr_planner.core.checks import (
-    check_choice,
-    check_count,
-    check_point,
-    check_seed,
-    Floats,
-)
-from hnr_planner.core.errors import RequestError
-from hnr_planner.core.kernels import kernel
-from hnr_planner.core.sampling.walks import coordinate_hit_and_run_step, hit_and_run_step
+from hnr_planner.core.checks import check_count, Floats
+from hnr_planner.core.sampling.chains import begin_chains, walk_on
+from hnr_planner.core.sampling.steps import Walk
 from hnr_planner.core.spaces.space import Space
-from hnr_planner.core.streams import stream
-import numpy as np
 from numpy.typing import ArrayLike
-
-#: Names of the walks; a kernel knows each by its place here.
-WALKS = ('hit_and_run', 'coordinate_hit_and_run')
 
 
 def sample(
@@ -27,7 +12,7 @@ def sample(
     start: ArrayLike,
     n_draws: int,
     *,
-    walk: str = 'hit_and_run',
+    walk: str | Walk = 'hit_and_run',
     n_chains: int = 1,
     burn_in: int = 0,
     thin: int = 1,
@@ -36,19 +21,20 @@ def sample(
     """
     Draw points that are uniform on the start's connected part of a space, in the long run.
 
-    Every chain walks from ``start`` in a thread and with a random stream of its own: the draws are
-    the same whatever the number of processors.
+    Every chain walks in a thread and with a random stream of its own: the draws are the same
+    whatever the number of processors. ``begin_chains`` and ``walk_on`` do the same in parts, and
+    tell what was counted.
 
     Parameters
     ----------
     space : Space
         The set to draw from.
-    start : (dim,)
-        A free point.
+    start : (dim,) or (n_chains, dim)
+        A free point where all chains begin, or one for each.
     n_draws : int
         Points kept of each chain.
-    walk : 'hit_and_run' or 'coordinate_hit_and_run'
-        The step: a uniform direction, or one of the axes, and a uniform point on the chord.
+    walk : 'hit_and_run', 'coordinate_hit_and_run', 'ball_walk' or a walk
+        How to step; a walk with settings is a value: ``BallWalk(radius=0.1)``.
     n_chains : int
         Independent chains.
     burn_in : int
@@ -66,47 +52,14 @@ def sample(
     Raises
     ------
     RequestError
-        When an argument is malformed, or the start is not free.
+        When an argument is malformed, or a start is not free.
+    StuckError
+        When a chain does not move any more.
 
     """
-    start = check_point('start', start, space.dim)
-    n_draws = check_count('n_draws', n_draws, 0)
-    n_chains = check_count('n_chains', n_chains, 1)
     burn_in = check_count('burn_in', burn_in, 0)
-    thin = check_count('thin', thin, 1)
-    step = WALKS.index(check_choice('walk', walk, WALKS))
-    if not space.contains(start):
-        raise RequestError(f'start {start.tolist()} is {space.why_not_free(start)}')
-
-    draws = np.empty((n_chains, n_draws, space.dim))
-    seed = check_seed(seed)
-
-    def walk_chain(chain: int) -> None:
-        x, rng = space.to_kernel(start), stream(seed, chain)
-        run_chain(space.data, step, x, rng, burn_in, thin, draws[chain])
-
-    with ThreadPoolExecutor() as pool:
-        list(pool.map(walk_chain, range(n_chains)))
-    return space.from_kernel(draws)
-
-
-@kernel
-def run_chain(space, step, x, rng, burn_in, thin, draws):
-    """Walk on from ``x`` (dim,), which is moved along, and fill ``draws`` (n_draws, dim)."""
-    space, x, rng = borrowed(space), borrowed(x), borrowed(rng)
-    y = np.empty_like(x)
-    for _ in range(burn_in):
-        _take_step(space, step, x, rng, y)
-    for k in range(len(draws)):
-        for _ in range(thin):
-            _take_step(space, step, x, rng, y)
-        draws[k] = x
-
-
-@kernel
-def _take_step(space, step, x, rng, y):
-    if step == 0:
-        hit_and_run_step(space, x, rng, y)
-    else:
-        coordinate_hit_and_run_step(space, x, rng, y)
-    x[:] = y
+    chains = begin_chains(space, start, n_chains=n_chains, seed=seed)
+    if burn_in > 0:
+        _, chains = walk_on(space, chains, 1, walk=walk, thin=burn_in)
+    draws, _ = walk_on(space, chains, n_draws, walk=walk, thin=thin)
+    return draws

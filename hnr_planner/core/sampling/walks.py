@@ -1,15 +1,15 @@
 """
-Steps of random walks whose law in the long run is uniform on the space.
+A step of Hit-and-Run from any point, and what it is made of: what planners call.
 
-A step is a small pure kernel: from the compiled space, a free point ``x`` and a stream it
-writes the next point into ``y``. It returns how many draws it threw away because they rounded onto
-the boundary: points of the space stay points of the space.
+From the compiled space, a free point ``x`` and a stream a step writes the next point into ``y``.
+It returns how many draws it threw away because they rounded onto the boundary: points of the space
+stay points of the space. Chains of steps, one from where the last one led, are in ``steps``.
 """
 
 import math
 
 from hnr_planner.core.kernels import inlined, kernel
-from hnr_planner.core.spaces.primitives import contains, leave
+from hnr_planner.core.spaces.primitives import around, contains
 from hnr_planner.core.streams import draw_normals, uniform
 import numpy as np
 
@@ -22,14 +22,6 @@ def hit_and_run_step(space, x, rng, y):
     """Take a step of Hit-and-Run: uniform direction, uniform point of its chord (paper, 1)."""
     u = np.empty(len(x))
     draw_direction(rng, u)
-    return draw_on_chord(space, x, u, rng, y)
-
-
-@kernel
-def coordinate_hit_and_run_step(space, x, rng, y):
-    """Take a step of Hit-and-Run along one of the axes, each as likely as the others."""
-    u = np.zeros(len(x))
-    u[math.floor(uniform(rng) * len(x))] = 1.0
     return draw_on_chord(space, x, u, rng, y)
 
 
@@ -47,8 +39,7 @@ def draw_direction(rng, u):
 @kernel
 def draw_on_chord(space, x, u, rng, y):
     """Draw ``y`` uniformly from the chord of ``x`` along ``u``; return the draws thrown away."""
-    upper = leave(space, x, u, 0.0, math.inf)
-    lower = -leave(space, x, -u, 0.0, math.inf)
+    lower, upper = around(space, x, u, -u)
     return draw_between(space, x, u, lower, upper, rng, y)
 
 

@@ -1,6 +1,6 @@
 """Spaces: open, bounded sets of free points that answer for points and chords."""
 
-from hnr_planner.core.spaces import grid_curves, surfaces  # noqa: F401 - tell curves about spaces
+from hnr_planner.core.spaces import grid_curves, polytope_places, surfaces  # noqa: F401 - kernels
 from hnr_planner.core.spaces.ball import BallSpace
 from hnr_planner.core.spaces.box import BoxSpace
 from hnr_planner.core.spaces.callbacks import OracleError

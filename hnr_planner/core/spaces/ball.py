@@ -5,14 +5,15 @@ from typing import NamedTuple
 
 from hnr_planner.core.checks import check_point, check_real, check_vector, Floats
 from hnr_planner.core.errors import SpaceError
-from hnr_planner.core.kernels import kernel
+from hnr_planner.core.kernels import inlined
 from hnr_planner.core.spaces.bounds import check_bounds
-from hnr_planner.core.spaces.convex import Convex, register_convex
+from hnr_planner.core.spaces.convex import convex, count, holds, span
 from hnr_planner.core.spaces.space import Space
 import numpy as np
 from numpy.typing import ArrayLike
 
 
+@convex
 class BallData(NamedTuple):
     """
     Compiled balls, as convex pieces.
@@ -81,12 +82,14 @@ class BallSpace(Space):
         return f'{distance:g} away from the centre of a ball of radius {self.radius:g}'
 
 
-@kernel
+@count.register(BallData)
+@inlined
 def _count(balls):
     return len(balls.radii)
 
 
-@kernel
+@holds.register(BallData)
+@inlined
 def _holds(balls, k, x, closed):
     squared = 0.0
     for i in range(len(x)):
@@ -95,7 +98,8 @@ def _holds(balls, k, x, closed):
     return excess < 0.0 or (closed and excess == 0.0)
 
 
-@kernel
+@span.register(BallData)
+@inlined
 def _span(balls, k, x, u, closed):
     """Solve a s^2 + 2 b s + c = 0, where c has the sign that ``_holds`` sees."""
     a, b, squared = 0.0, 0.0, 0.0
@@ -115,6 +119,3 @@ def _span(balls, k, x, u, closed):
     if root > b:
         return c / (root - b), (root - b) / a
     return 0.0, 0.0
-
-
-register_convex(BallData, Convex(_count, _holds, _span))

@@ -1,7 +1,10 @@
-"""Bounds at the door: a box around a space that floating-point numbers can resolve."""
+"""Bounds: a box around a space, which floating-point numbers can resolve."""
+
+import math
 
 from hnr_planner.core.checks import Floats
 from hnr_planner.core.errors import SpaceError
+from hnr_planner.core.kernels import kernel
 import numpy as np
 
 #: Coordinates must resolve this part of each side, or chords would end in their rounding.
@@ -24,3 +27,17 @@ def check_bounds(name: str, lower: Floats, upper: Floats) -> None:
 
 def _words(lower: Floats, upper: Floats) -> str:
     return f'{lower.tolist()} .. {upper.tolist()}'
+
+
+@kernel
+def within(lower, upper, x, u):
+    """Return where the line ``x + s u`` enters and leaves a box; (inf, -inf) for never."""
+    first, last = -math.inf, math.inf
+    for i in range(len(x)):
+        below, above = lower[i] - x[i], upper[i] - x[i]
+        if u[i] != 0.0:
+            first = max(first, min(below / u[i], above / u[i]))
+            last = min(last, max(below / u[i], above / u[i]))
+        elif not below <= 0.0 <= above:
+            return math.inf, -math.inf
+    return first, last

@@ -5,14 +5,15 @@ from typing import NamedTuple
 
 from hnr_planner.core.checks import check_point, check_vector, Floats
 from hnr_planner.core.errors import SpaceError
-from hnr_planner.core.kernels import kernel
+from hnr_planner.core.kernels import inlined
 from hnr_planner.core.spaces.bounds import check_bounds
-from hnr_planner.core.spaces.convex import Convex, register_convex
+from hnr_planner.core.spaces.convex import convex, count, holds, span
 from hnr_planner.core.spaces.space import Space
 import numpy as np
 from numpy.typing import ArrayLike
 
 
+@convex
 class BoxData(NamedTuple):
     """
     Compiled boxes, as convex pieces.
@@ -78,12 +79,14 @@ class BoxSpace(Space):
         )
 
 
-@kernel
+@count.register(BoxData)
+@inlined
 def _count(boxes):
     return len(boxes.lower)
 
 
-@kernel
+@holds.register(BoxData)
+@inlined
 def _holds(boxes, k, x, closed):
     for i in range(len(x)):
         below, above = x[i] - boxes.lower[k, i], boxes.upper[k, i] - x[i]
@@ -92,7 +95,8 @@ def _holds(boxes, k, x, closed):
     return True
 
 
-@kernel
+@span.register(BoxData)
+@inlined
 def _span(boxes, k, x, u, closed):
     """Cut the line with the two faces across each axis."""
     first, last = -math.inf, math.inf
@@ -107,6 +111,3 @@ def _span(boxes, k, x, u, closed):
     if first < last or (closed and first == last):
         return first, last
     return math.inf, -math.inf
-
-
-register_convex(BoxData, Convex(_count, _holds, _span))

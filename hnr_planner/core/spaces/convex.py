@@ -2,92 +2,74 @@
 Convex pieces: sets that cut one interval out of every line.
 
 The data of such a space holds one piece or several, which together mean their union: pieces of one
-kind lie in the same arrays, so that a union of many is one short loop. For its type three kernels
-are registered, and the primitives follow from them:
-
-``count(space) -> int``
-    How many pieces there are.
-``holds(space, k, x, closed) -> bool``
-    Whether piece ``k`` holds ``x``, its boundary included when ``closed``.
-``span(space, k, x, u, closed) -> (float, float)``
-    The interval of the line ``x + s u`` in piece ``k``: (inf, -inf) for none. Open and closed
-    pieces differ in the lines that only touch them, or run along a face.
-
-Each array of the data has one row for each piece. The last field, ``gap``, is how far apart two
-pieces may be for a ray to pass from one to the other.
+kind lie in the same arrays, so that a union of many is one short loop. Each array has one row for
+each piece, and the last field, ``gap``, is how far apart two pieces may be for a ray to pass from
+one to the other. A type decorated with ``convex`` registers kernels for ``count``, ``holds`` and
+``span``, and the primitives follow from them.
 """
 
 from collections.abc import Sequence
 import math
-from typing import Any, NamedTuple
+from typing import Any, TypeVar
 
-from hnr_planner.core.kernels import interpreted, kernel
+from hnr_planner.core.dispatch import dispatched
+from hnr_planner.core.kernels import kernel
 from hnr_planner.core.lengths import norm
-from hnr_planner.core.spaces.primitives import Primitives, register
-from numba.core.dispatcher import Dispatcher
-from numba.extending import overload
+from hnr_planner.core.spaces import primitives
+from hnr_planner.core.spaces.primitives import leave
 import numpy as np
 
-
-class Convex(NamedTuple):
-    """The kernels of one type of convex pieces."""
-
-    count: Dispatcher
-    holds: Dispatcher
-    span: Dispatcher
+DataType = TypeVar('DataType', bound=type)
 
 
-_CONVEX: dict[type, Convex] = {}
+@dispatched
+@kernel
+def count(space: Any) -> int:
+    """Return how many pieces there are."""
+    raise NotImplementedError
+
+
+@dispatched
+@kernel
+def holds(space: Any, k: int, x: Any, closed: bool) -> bool:
+    """Say whether piece ``k`` holds ``x``, its boundary included when ``closed``."""
+    raise NotImplementedError
+
+
+@dispatched
+@kernel
+def span(space: Any, k: int, x: Any, u: Any, closed: bool) -> tuple[float, float]:
+    """
+    Return the interval of the line ``x + s u`` in piece ``k``; (inf, -inf) for none.
+
+    Open and closed pieces differ in the lines that only touch them, or run along a face.
+    """
+    raise NotImplementedError
+
+
+def convex(data_type: DataType) -> DataType:
+    """Let the primitives answer for NamedTuples of ``data_type``, whose pieces are convex."""
+    for primitive, answer in (
+        (primitives.contains, _contains),
+        (primitives.touches, _touches),
+        (primitives.leave, _leave),
+        (primitives.enter, _enter),
+        (primitives.around, _around),
+        (primitives.apart, _apart),
+    ):
+        primitive.register(data_type)(answer)
+    return data_type
 
 
 def is_convex(data: Any) -> bool:
     """Say whether data holds convex pieces, which ``pack`` takes."""
-    return type(data) in _CONVEX
-
-
-def register_convex(data_type: type, convex: Convex) -> None:
-    """Let the primitives answer for NamedTuples of ``data_type``, whose pieces are convex."""
-    _CONVEX[data_type] = convex
-    register(data_type, Primitives(_contains, _touches, _leave, _enter))
+    return span.knows(data)
 
 
 def pack(pieces: Sequence[Any], gap: float) -> Any:
     """Return the data of all pieces of several data of one type, between which gaps close."""
     fields = zip(*(data[:-1] for data in pieces), strict=True)
     return type(pieces[0])(*map(np.concatenate, fields), gap)
-
-
-def count(space: Any) -> int:
-    """Return the number of pieces."""
-    return interpreted(_CONVEX[type(space)].count)(space)
-
-
-def holds(space: Any, k: int, x: Any, closed: bool) -> bool:
-    """Say whether piece ``k`` holds ``x``, its boundary included when ``closed``."""
-    return interpreted(_CONVEX[type(space)].holds)(space, k, x, closed)
-
-
-def span(space: Any, k: int, x: Any, u: Any, closed: bool) -> tuple[float, float]:
-    """Return the interval of the line ``x + s u`` in piece ``k``; (inf, -inf) for none."""
-    return interpreted(_CONVEX[type(space)].span)(space, k, x, u, closed)
-
-
-@overload(count)
-def _compiled_count(space):
-    compiled = _CONVEX[space.instance_class].count
-    return lambda space: compiled(space)
-
-
-@overload(holds)
-def _compiled_holds(space, k, x, closed):
-    compiled = _CONVEX[space.instance_class].holds
-    return lambda space, k, x, closed: compiled(space, k, x, closed)
-
-
-@overload(span)
-def _compiled_span(space, k, x, u, closed):
-    compiled = _CONVEX[space.instance_class].span
-    return lambda space, k, x, u, closed: compiled(space, k, x, u, closed)
 
 
 @kernel
@@ -137,3 +119,27 @@ def _enter(space, x, u, t):
         if t <= upper:
             first = min(first, max(t, lower))
     return first
+
+
+@kernel
+def _around(space, x, u, back):
+    """Take both ends from one piece; several may reach on from one to the next."""
+    if count(space) > 1:
+        return -leave(space, x, back, 0.0, math.inf), leave(space, x, u, 0.0, math.inf)
+    lower, upper = span(space, 0, x, u, False)
+    return (lower, upper) if lower < 0.0 < upper else (0.0, 0.0)
+
+
+@kernel
+def _apart(space, x, u, back):
+    """Let every piece cut off what lies behind it, on either side."""
+    lower, upper = -math.inf, math.inf
+    for k in range(count(space)):
+        first, last = span(space, k, x, u, True)
+        if first <= 0.0 <= last:
+            return 0.0, 0.0
+        if last < 0.0:
+            lower = max(lower, last)
+        elif first <= last:
+            upper = min(upper, first)
+    return lower, upper

@@ -4,24 +4,68 @@ Curves that a robot follows, and where they leave a space.
 Under constant controls a robot runs along a parabola or an arc. Each coordinate of such a curve is
 a function of one parameter for which everything that contact asks is closed form: its value, where
 it turns, and where it reaches a value before it turns. So the first contact with a boundary is
-found as a root, never by stepping along.
-
-``leave_curve(space, curve, end) -> float``
-    The first parameter in [0, ``end``] at which the curve is not free; inf for none. A kernel for
-    it is registered for each kind of compiled space that can answer.
+found as a root, never by stepping along. Each kind of compiled space that can answer registers a
+kernel for ``leave_curve``.
 """
 
-from collections.abc import Callable
 import math
 from typing import Any, NamedTuple
 
 from hnr_planner.core.checks import Floats
-from hnr_planner.core.kernels import interpreted, kernel
-from numba.core.dispatcher import Dispatcher
-from numba.extending import overload
+from hnr_planner.core.dispatch import dispatched
+from hnr_planner.core.kernels import kernel
+from hnr_planner.core.spaces.primitives import contains
 
 #: A turning point of an arc nearer than this part of half a circle is the one just passed.
 SAME_TURN = 1e-9
+
+
+@dispatched
+@kernel
+def coordinate(curve: Any, i: int) -> Any:
+    """Return coordinate ``i`` of a curve, as a function of its parameter."""
+    raise NotImplementedError
+
+
+@dispatched
+@kernel
+def along(curve: Any, normal: Any) -> Any:
+    """Return the coordinate of a curve along a unit vector ``normal`` (dim,), likewise."""
+    raise NotImplementedError
+
+
+@dispatched
+@kernel
+def at(f: Any, t: float) -> float:
+    """Return the value of a coordinate at ``t``."""
+    raise NotImplementedError
+
+
+@dispatched
+@kernel
+def turn(f: Any, t: float) -> float:
+    """Return the first parameter > ``t`` at which a coordinate turns; inf for none."""
+    raise NotImplementedError
+
+
+@dispatched
+@kernel
+def reach(f: Any, value: float, t: float) -> float:
+    """Return where a coordinate has ``value``, between ``t`` and its next turn; inf for never."""
+    raise NotImplementedError
+
+
+@dispatched
+@kernel
+def leave_curve(space: Any, curve: Any, end: float) -> float:
+    """Return the first parameter in [0, ``end``] at which a curve is not free; inf for none."""
+    raise NotImplementedError
+
+
+def knows_curves(data: Any) -> bool:
+    """Say whether it is known where curves leave a compiled space, and all that it is made of."""
+    parts = [part for part in data if contains.knows(part)]
+    return leave_curve.knows(data) and all(map(knows_curves, parts))
 
 
 class Parabola(NamedTuple):
@@ -56,16 +100,19 @@ class Winding(NamedTuple):
     curvature: float
 
 
+@coordinate.register(Parabola)
 @kernel
 def _parabola_coordinate(curve, i):
     return Quadratic(curve.position[i], curve.velocity[i], curve.acceleration[i])
 
 
+@coordinate.register(Arc)
 @kernel
 def _arc_coordinate(curve, i):
     return Winding(curve.position[i], curve.heading - i * (math.pi / 2.0), curve.curvature)
 
 
+@along.register(Parabola)
 @kernel
 def _parabola_along(curve, normal):
     x, v, a = 0.0, 0.0, 0.0
@@ -76,23 +123,27 @@ def _parabola_along(curve, normal):
     return Quadratic(x, v, a)
 
 
+@along.register(Arc)
 @kernel
 def _arc_along(curve, normal):
     start = normal[0] * curve.position[0] + normal[1] * curve.position[1]
     return Winding(start, curve.heading - math.atan2(normal[1], normal[0]), curve.curvature)
 
 
+@at.register(Quadratic)
 @kernel
 def _quadratic_at(f, t):
     return f.start + t * (f.slope + t * (f.change / 2.0))
 
 
+@turn.register(Quadratic)
 @kernel
 def _quadratic_turn(f, t):
     turn = -f.slope / f.change if f.change != 0.0 else math.inf
     return turn if turn > t else math.inf
 
 
+@reach.register(Quadratic)
 @kernel
 def _quadratic_reach(f, value, t):
     """Solve for the way from ``t`` on, in the form that subtracts nothing."""
@@ -105,6 +156,7 @@ def _quadratic_reach(f, value, t):
     return t + 2.0 * away / (slope + math.copysign(math.sqrt(squared), away))
 
 
+@at.register(Winding)
 @kernel
 def _winding_at(f, s):
     """Go along the chord: its length is that of the arc times sin(h) / h, its angle the mean."""
@@ -113,6 +165,7 @@ def _winding_at(f, s):
     return f.start + s * shrink * math.cos(f.angle + half)
 
 
+@turn.register(Winding)
 @kernel
 def _winding_turn(f, s):
     if f.curvature == 0.0:
@@ -124,6 +177,7 @@ def _winding_turn(f, s):
     return turn if turn > s + SAME_TURN * half_circle else turn + half_circle
 
 
+@reach.register(Winding)
 @kernel
 def _winding_reach(f, value, s):
     """Solve for tan(h), where h is half the angle turned from ``s`` on: a quadratic as above."""
@@ -139,111 +193,6 @@ def _winding_reach(f, value, s):
     if f.curvature == 0.0:
         return s + 2.0 * tangent
     return s + 2.0 * math.atan(f.curvature * tangent) / f.curvature
-
-
-class Coordinate(NamedTuple):
-    """The kernels of one kind of coordinate."""
-
-    at: Dispatcher
-    turn: Dispatcher
-    reach: Dispatcher
-
-
-class Coordinates(NamedTuple):
-    """The kernels of one kind of curve: its coordinates along an axis and along a unit vector."""
-
-    coordinate: Dispatcher
-    along: Dispatcher
-
-
-_CURVES = {
-    Parabola: Coordinates(_parabola_coordinate, _parabola_along),
-    Arc: Coordinates(_arc_coordinate, _arc_along),
-}
-_COORDINATES = {
-    Quadratic: Coordinate(_quadratic_at, _quadratic_turn, _quadratic_reach),
-    Winding: Coordinate(_winding_at, _winding_turn, _winding_reach),
-}
-_LEAVE_CURVE: dict[type, Dispatcher] = {}
-_KNOWS: dict[type, Callable[[Any], bool]] = {}
-
-
-def register_curves(
-    data_type: type, leave: Dispatcher, knows: Callable[[Any], bool] = lambda _: True
-) -> None:
-    """Let ``leave_curve`` answer for those NamedTuples of ``data_type`` that ``knows`` takes."""
-    _LEAVE_CURVE[data_type], _KNOWS[data_type] = leave, knows
-
-
-def knows_curves(data: Any) -> bool:
-    """Say whether it is known where curves leave a compiled space."""
-    return type(data) in _KNOWS and _KNOWS[type(data)](data)
-
-
-def coordinate(curve: Any, i: int) -> Any:
-    """Return coordinate ``i`` of a curve, as a function of its parameter."""
-    return interpreted(_CURVES[type(curve)].coordinate)(curve, i)
-
-
-def along(curve: Any, normal: Any) -> Any:
-    """Return the coordinate of a curve along a unit vector ``normal`` (dim,), likewise."""
-    return interpreted(_CURVES[type(curve)].along)(curve, normal)
-
-
-def at(f: Any, t: float) -> float:
-    """Return the value of a coordinate at ``t``."""
-    return interpreted(_COORDINATES[type(f)].at)(f, t)
-
-
-def turn(f: Any, t: float) -> float:
-    """Return the first parameter > ``t`` at which a coordinate turns; inf for none."""
-    return interpreted(_COORDINATES[type(f)].turn)(f, t)
-
-
-def reach(f: Any, value: float, t: float) -> float:
-    """Return where a coordinate has ``value``, between ``t`` and its next turn; inf for never."""
-    return interpreted(_COORDINATES[type(f)].reach)(f, value, t)
-
-
-def leave_curve(space: Any, curve: Any, end: float) -> float:
-    """Return the first parameter in [0, ``end``] at which a curve is not free; inf for none."""
-    return interpreted(_LEAVE_CURVE[type(space)])(space, curve, end)
-
-
-@overload(coordinate)
-def _compiled_coordinate(curve, i):
-    compiled = _CURVES[curve.instance_class].coordinate
-    return lambda curve, i: compiled(curve, i)
-
-
-@overload(along)
-def _compiled_along(curve, normal):
-    compiled = _CURVES[curve.instance_class].along
-    return lambda curve, normal: compiled(curve, normal)
-
-
-@overload(at)
-def _compiled_at(f, t):
-    compiled = _COORDINATES[f.instance_class].at
-    return lambda f, t: compiled(f, t)
-
-
-@overload(turn)
-def _compiled_turn(f, t):
-    compiled = _COORDINATES[f.instance_class].turn
-    return lambda f, t: compiled(f, t)
-
-
-@overload(reach)
-def _compiled_reach(f, value, t):
-    compiled = _COORDINATES[f.instance_class].reach
-    return lambda f, value, t: compiled(f, value, t)
-
-
-@overload(leave_curve)
-def _compiled_leave_curve(space, curve, end):
-    compiled = _LEAVE_CURVE[space.instance_class]
-    return lambda space, curve, end: compiled(space, curve, end)
 
 
 @kernel

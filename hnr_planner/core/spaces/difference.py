@@ -8,11 +8,12 @@ from hnr_planner.core.errors import SpaceError
 from hnr_planner.core.kernels import kernel
 from hnr_planner.core.spaces.composed import check_parts, check_same_dim
 from hnr_planner.core.spaces.primitives import (
+    apart,
+    around,
+    component,
     contains,
     enter,
     leave,
-    Primitives,
-    register,
     touches,
 )
 from hnr_planner.core.spaces.space import Space
@@ -69,8 +70,9 @@ class DifferenceSpace(Space):
 
     @property
     def typical_clearance(self) -> float:
-        """That of the base, cut down by what lies in between."""
-        return self.base.typical_clearance / (1.0 + len(self.removed)) ** (1.0 / self.dim)
+        """That of the base, in the caller's units, cut down by what lies in between."""
+        of_base = self.base.typical_clearance * self.base.scale
+        return of_base / (1.0 + len(self.removed)) ** (1.0 / self.dim)
 
     def why_not_free(self, point: ArrayLike) -> str:
         """Say in words why ``point`` (dim,) is not free."""
@@ -83,22 +85,26 @@ class DifferenceSpace(Space):
         return 'on the boundary of a removed part'
 
 
+@contains.register(DifferenceData)
 @kernel
 def _contains(difference, x):
     return contains(difference.base, x) and not touches(difference.removed, x)
 
 
+@touches.register(DifferenceData)
 @kernel
 def _touches(difference, x):
     return touches(difference.base, x) and not contains(difference.removed, x)
 
 
+@leave.register(DifferenceData)
 @kernel
 def _leave(difference, x, u, t, enough):
     end = leave(difference.base, x, u, t, enough)
     return min(end, enter(difference.removed, x, u, t)) if end > t else t
 
 
+@enter.register(DifferenceData)
 @kernel
 def _enter(difference, x, u, t):
     """Enter the base, and leave what is removed, until neither moves the line on."""
@@ -111,4 +117,16 @@ def _enter(difference, x, u, t):
     return s
 
 
-register(DifferenceData, Primitives(_contains, _touches, _leave, _enter))
+@around.register(DifferenceData)
+@kernel
+def _around(difference, x, u, back):
+    lower, upper = around(difference.base, x, u, back)
+    first, last = apart(difference.removed, x, u, back)
+    return max(lower, first), min(upper, last)
+
+
+@component.register(DifferenceData)
+@kernel
+def _component(difference, x):
+    """Return the part of the base: what is removed may cut it into more, but joins none."""
+    return component(difference.base, x) if contains(difference, x) else 0

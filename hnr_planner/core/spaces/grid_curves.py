@@ -9,21 +9,22 @@ quotients.
 import math
 
 from hnr_planner.core.kernels import kernel
-from hnr_planner.core.spaces.curves import at, coordinate, reach, register_curves, turn
+from hnr_planner.core.spaces.curves import at, coordinate, leave_curve, reach, turn
 from hnr_planner.core.spaces.grid_traversal import (
-    _first_cell,
-    _is_free,
+    first_cell,
     GridData,
+    is_free,
     LEAST_REACH,
     SKIN,
 )
 
 
+@leave_curve.register(GridData)
 @kernel
 def _leave_curve(grid, curve, end):
     free_distance = grid.free_distance
     x, y = coordinate(curve, 0), coordinate(curve, 1)
-    if not _is_free(free_distance, at(x, 0.0), at(y, 0.0)):
+    if not is_free(free_distance, at(x, 0.0), at(y, 0.0)):
         return 0.0
     t = 0.0
     while t < end:
@@ -39,8 +40,8 @@ def _leave_curve(grid, curve, end):
 def _leave_piece(free_distance, x, y, t, end):
     """Follow a piece that does not turn between ``t`` and ``end``."""
     x_at_t, y_at_t = at(x, t), at(y, t)
-    column, column_step, beside_column = _first_cell(x_at_t, at(x, end) - x_at_t)
-    row, row_step, beside_row = _first_cell(y_at_t, at(y, end) - y_at_t)
+    column, column_step, beside_column = first_cell(x_at_t, at(x, end) - x_at_t)
+    row, row_step, beside_row = first_cell(y_at_t, at(y, end) - y_at_t)
     s = t
     while True:
         free = int(free_distance[row, column]) - 1
@@ -75,6 +76,3 @@ def _across(f, t, cell, step, free, inside):
         return math.inf
     skin = SKIN if inside else 0.0
     return reach(f, cell + free + 1 - skin if step > 0 else cell - free + skin, t)
-
-
-register_curves(GridData, _leave_curve)

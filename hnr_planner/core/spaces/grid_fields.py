@@ -1,6 +1,9 @@
-"""Fields over the cells of a grid, a pass of OpenCV each: inflation, distance, components."""
+"""
+Fields over the cells of a grid, a pass of OpenCV each: inflation, distance, components.
 
-import cv2
+OpenCV is imported where it is called: a tenth of a second, which other spaces do without.
+"""
+
 from hnr_planner.core.spaces.grid_cells import Bools
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +19,8 @@ def inflate(occupied: Bools, radius: float) -> Bools:
     Squared offsets between cells are whole numbers, so the limit on the distance is set between
     two of their roots, where the transform's rounding cannot matter.
     """
+    import cv2
+
     if radius == 0.0 or not occupied.any():
         return occupied
     limit = np.sqrt(np.floor(radius * radius + 1e-9) + 0.5)
@@ -42,6 +47,8 @@ def free_distance(blocked: Bools, *, closed_rim: bool = True) -> NDArray[np.uint
         0 for blocked cells and, with ``closed_rim``, on the rim.
 
     """
+    import cv2
+
     free = np.pad(~blocked, 1, constant_values=not closed_rim).astype(np.uint8)
     if free.all():
         return np.full(free.shape, FARTHEST, dtype=np.uint8)
@@ -52,5 +59,7 @@ def free_distance(blocked: Bools, *, closed_rim: bool = True) -> NDArray[np.uint
 
 def components(free: NDArray[np.bool_]) -> NDArray[np.int32]:
     """Label (rows, cols) the free cells connected over shared edges: 1, 2, …; 0 is not free."""
+    import cv2
+
     _, labels = cv2.connectedComponents(free.view(np.uint8), connectivity=4, ltype=cv2.CV_32S)
     return np.asarray(labels, dtype=np.int32)

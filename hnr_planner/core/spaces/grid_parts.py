@@ -2,7 +2,6 @@
 
 import math
 
-import cv2
 from hnr_planner.core.kernels import kernel
 from hnr_planner.core.spaces.grid_cells import Bools
 import numpy as np
@@ -16,6 +15,8 @@ def island_points(blocked_with_rim: Bools) -> NDArray[np.float64]:
     An island is a group of blocked cells connected over edges or corners, between which nothing
     gets through, that is not connected with the rim.
     """
+    import cv2  # as in grid_fields
+
     _, labels = cv2.connectedComponents(
         blocked_with_rim.view(np.uint8), connectivity=8, ltype=cv2.CV_32S
     )

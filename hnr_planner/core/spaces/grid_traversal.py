@@ -16,7 +16,7 @@ import math
 from typing import NamedTuple
 
 from hnr_planner.core.kernels import kernel
-from hnr_planner.core.spaces.primitives import Primitives, register
+from hnr_planner.core.spaces.primitives import component, contains, enter, leave, sees, touches
 import numpy as np
 from numpy.typing import NDArray
 
@@ -43,13 +43,14 @@ class GridData(NamedTuple):
     labels: NDArray[np.int32]
 
 
+@contains.register(GridData)
 @kernel
 def _contains(grid, x):
-    return _is_free(grid.free_distance, x[0], x[1])
+    return is_free(grid.free_distance, x[0], x[1])
 
 
 @kernel
-def _is_free(free_distance, x, y):
+def is_free(free_distance, x, y):
     """Say whether every cell that touches the point is free."""
     rows, columns = free_distance.shape
     if not (0.0 < x < columns and 0.0 < y < rows):
@@ -65,18 +66,21 @@ def _is_free(free_distance, x, y):
     return not (on_column_line and on_row_line and free_distance[row - 1, column - 1] == 0)
 
 
+@component.register(GridData)
 @kernel
 def _component(grid, x):
-    if not _is_free(grid.free_distance, x[0], x[1]):
+    if not is_free(grid.free_distance, x[0], x[1]):
         return 0
     return int(grid.labels[math.floor(x[1]), math.floor(x[0])])
 
 
+@leave.register(GridData)
 @kernel
 def _leave(grid, x, u, t, enough):
     return _traverse(grid.free_distance, x[0], x[1], u[0], u[1], t, enough)
 
 
+@touches.register(GridData)
 @kernel
 def _touches(grid, x):
     """Say whether one of the cells that touch the point is free."""
@@ -89,6 +93,7 @@ def _touches(grid, x):
     return _any_free(free_distance, left, column, below, row)
 
 
+@enter.register(GridData)
 @kernel
 def _enter(grid, x, u, t):
     """Follow the ray from cell to cell until the crossing into one touches a free cell."""
@@ -101,8 +106,8 @@ def _enter(grid, x, u, t):
     s, last = max(t, first_column, first_row), min(last_column, last_row)
     if s >= last:
         return math.inf
-    column, column_step, beside_column = _first_cell(x[0] + s * u[0], u[0])
-    row, row_step, beside_row = _first_cell(x[1] + s * u[1], u[1])
+    column, column_step, beside_column = first_cell(x[0] + s * u[0], u[0])
+    row, row_step, beside_row = first_cell(x[1] + s * u[1], u[1])
     column, row = min(max(column, 0), columns - 1), min(max(row, 0), rows - 1)
     while True:
         s_column = _crossing(x[0], u[0], column, column_step)
@@ -138,11 +143,12 @@ def _any_free(free_distance, left, right, below, above):
     return False
 
 
+@sees.register(GridData)
 @kernel
 def _sees(grid, a, b):
     dx, dy = b[0] - a[0], b[1] - a[1]
     if dx == 0.0 and dy == 0.0:
-        return _is_free(grid.free_distance, a[0], a[1])
+        return is_free(grid.free_distance, a[0], a[1])
     return _traverse(grid.free_distance, a[0], a[1], dx, dy, 0.0, 1.0) > 1.0
 
 
@@ -150,10 +156,10 @@ def _sees(grid, a, b):
 def _traverse(free_distance, x, y, dx, dy, t, enough):
     """Follow the ray cell by cell, and from free square to free square where walls are far."""
     x_at_t, y_at_t = x + t * dx, y + t * dy
-    if not _is_free(free_distance, x_at_t, y_at_t):
+    if not is_free(free_distance, x_at_t, y_at_t):
         return t
-    column, column_step, beside_column = _first_cell(x_at_t, dx)
-    row, row_step, beside_row = _first_cell(y_at_t, dy)
+    column, column_step, beside_column = first_cell(x_at_t, dx)
+    row, row_step, beside_row = first_cell(y_at_t, dy)
     s_column = _crossing(x, dx, column, column_step)
     s_row = _crossing(y, dy, row, row_step)
     per_column, per_row = 1.0 / dx, 1.0 / dy
@@ -194,7 +200,7 @@ def _traverse(free_distance, x, y, dx, dy, t, enough):
 
 
 @kernel
-def _first_cell(at, u):
+def first_cell(at, u):
     """Index of the cell ahead, step to the next one, and -1 when the ray runs along a line."""
     cell = math.floor(at)
     if u > 0.0:
@@ -233,6 +239,3 @@ def _settled(x, u, cell, step, s):
         cell += step
         crossing = _crossing(x, u, cell, step)
     return cell, crossing
-
-
-register(GridData, Primitives(_contains, _touches, _leave, _enter, _component, _sees))

@@ -8,9 +8,9 @@ from hnr_planner.core.checks import check_real, check_vector, Floats
 from hnr_planner.core.errors import SpaceError
 from hnr_planner.core.kernels import kernel
 from hnr_planner.core.lengths import norm
-from hnr_planner.core.spaces.bounds import check_bounds
+from hnr_planner.core.spaces.bounds import check_bounds, within
 from hnr_planner.core.spaces.callbacks import address, ask, callback, OracleError
-from hnr_planner.core.spaces.primitives import Primitives, register
+from hnr_planner.core.spaces.primitives import contains, enter, leave, touches
 from hnr_planner.core.spaces.space import MARGIN, Space
 from numba import njit
 from numba.core.dispatcher import Dispatcher
@@ -191,17 +191,20 @@ def _is_free(chord: Any) -> Callable[[Floats], bool]:
     return njit(nogil=True)(contains) if isinstance(chord, Dispatcher) else contains
 
 
+@contains.register(OracleData)
+@touches.register(OracleData)
 @kernel
 def _contains(oracle, x):
     return _is_in(oracle, x, x, 0.0, np.empty(len(x) + 1))
 
 
+@leave.register(OracleData)
 @kernel
 def _leave(oracle, x, u, t, enough):
     room = np.empty(len(x) + 1)
     if not _is_in(oracle, x, u, t, room):
         return t
-    _, last = _within(oracle, x, u)
+    _, last = within(oracle.lower, oracle.upper, x, u)
     if oracle.chord != 0:
         return min(t + _reach(oracle, x, u, t), last)
     step, before = oracle.resolution / norm(u), t
@@ -213,12 +216,13 @@ def _leave(oracle, x, u, t, enough):
     return before
 
 
+@enter.register(OracleData)
 @kernel
 def _enter(oracle, x, u, t):
     room = np.empty(len(x) + 1)
     if _is_in(oracle, x, u, t, room):
         return t
-    first, last = _within(oracle, x, u)
+    first, last = within(oracle.lower, oracle.upper, x, u)
     step, before = oracle.resolution / norm(u), max(t, first)
     while before < last:
         s = min(before + step, last)
@@ -241,20 +245,6 @@ def _closed_in(oracle, x, u, before, after, room):
         else:
             after = middle
     return after
-
-
-@kernel
-def _within(oracle, x, u):
-    """Return where a line comes into the bounds, and where it goes out."""
-    first, last = -math.inf, math.inf
-    for i in range(len(x)):
-        below, above = oracle.lower[i] - x[i], oracle.upper[i] - x[i]
-        if u[i] != 0.0:
-            first = max(first, min(below / u[i], above / u[i]))
-            last = min(last, max(below / u[i], above / u[i]))
-        elif not below < 0.0 < above:
-            return math.inf, -math.inf
-    return first, last
 
 
 @kernel
@@ -281,6 +271,3 @@ def _reach(oracle, x, u, t):
     if ask(oracle.chord, line, answer) != 0:
         raise OracleError
     return answer[0] if answer[0] > 0.0 else 0.0
-
-
-register(OracleData, Primitives(_contains, _contains, _leave, _enter))

@@ -9,8 +9,6 @@ from hnr_planner.core.spaces.primitives import (
     contains,
     enter,
     leave,
-    Primitives,
-    register,
     touches,
 )
 import numpy as np
@@ -36,26 +34,31 @@ class PlacedData(NamedTuple):
     offset: Floats
 
 
+@contains.register(PlacedData)
 @kernel
 def _contains(placed, x):
     return contains(placed.space, _point(placed, x))
 
 
+@touches.register(PlacedData)
 @kernel
 def _touches(placed, x):
     return touches(placed.space, _point(placed, x))
 
 
+@leave.register(PlacedData)
 @kernel
 def _leave(placed, x, u, t, enough):
     return leave(placed.space, _point(placed, x), _turned(placed.matrix, u), t, enough)
 
 
+@enter.register(PlacedData)
 @kernel
 def _enter(placed, x, u, t):
     return enter(placed.space, _point(placed, x), _turned(placed.matrix, u), t)
 
 
+@component.register(PlacedData)
 @kernel
 def _component(placed, x):
     return component(placed.space, _point(placed, x))
@@ -76,6 +79,3 @@ def _turned(matrix, u):
         for j in range(len(u)):
             v[i] += matrix[i, j] * u[j]
     return v
-
-
-register(PlacedData, Primitives(_contains, _touches, _leave, _enter, _component))

@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 from hnr_planner.core.checks import Floats
 from hnr_planner.core.kernels import kernel
-from hnr_planner.core.spaces.primitives import Primitives, register
+from hnr_planner.core.spaces.primitives import component, contains, enter, leave, touches
 import numpy as np
 from numpy.typing import NDArray
 
@@ -198,21 +198,25 @@ def _is_on(space, k, x, y):
     return apart * apart <= around * around * (across * across + up * up)
 
 
+@contains.register(PolygonData)
 @kernel
 def _contains(space, x):
     return _locate(space, x[0], x[1]) > 0
 
 
+@touches.register(PolygonData)
 @kernel
 def _touches(space, x):
     return _locate(space, x[0], x[1]) != 0
 
 
+@component.register(PolygonData)
 @kernel
 def _component(space, x):
     return max(_locate(space, x[0], x[1]), 0)
 
 
+@leave.register(PolygonData)
 @kernel
 def _leave(space, x, u, t, enough):
     px, py = x[0] + t * u[0], x[1] + t * u[1]
@@ -221,6 +225,7 @@ def _leave(space, x, u, t, enough):
     return t + _first_edge(space, px, py, u[0], u[1], enough - t)
 
 
+@enter.register(PolygonData)
 @kernel
 def _enter(space, x, u, t):
     px, py = x[0] + t * u[0], x[1] + t * u[1]
@@ -329,6 +334,3 @@ def distance_to_edges(edges, points):
             least = min(least, (ax + s * across) ** 2 + (ay + s * up) ** 2)
         nearest[i] = math.sqrt(least)
     return nearest
-
-
-register(PolygonData, Primitives(_contains, _touches, _leave, _enter, _component))

@@ -1,36 +1,19 @@
 """A polytope: the points that hold finitely many linear inequalities."""
 
 import math
-from typing import NamedTuple
 
 from hnr_planner.core.checks import check_point, check_vector, Floats
 from hnr_planner.core.errors import SpaceError
 from hnr_planner.core.kernels import kernel
 from hnr_planner.core.spaces.bounds import check_bounds
-from hnr_planner.core.spaces.primitives import Primitives, register
+from hnr_planner.core.spaces.polytope_planes import doubt, layout_of, PolytopeData
+from hnr_planner.core.spaces.primitives import contains, enter, leave, touches
 from hnr_planner.core.spaces.space import Space
 import numpy as np
 from numpy.typing import ArrayLike
 
 #: A polytope thinner than this part of its bounds' diagonal has no inside that numbers resolve.
 THINNEST = 1e-10
-
-
-class PolytopeData(NamedTuple):
-    """
-    A compiled polytope.
-
-    Attributes
-    ----------
-    normals : (m, dim)
-        Unit vectors, outward.
-    offsets : (m,)
-        The inequalities are ``normals x < offsets``.
-
-    """
-
-    normals: Floats
-    offsets: Floats
 
 
 class PolytopeSpace(Space):
@@ -54,9 +37,11 @@ class PolytopeSpace(Space):
     def __init__(self, a: ArrayLike, b: ArrayLike) -> None:
         normals, offsets = _check_inequalities(a, b)
         self.dim = normals.shape[1]
-        self.data = PolytopeData(normals, offsets)
-        self._lower, self._upper = _bounds(normals, offsets)
-        check_bounds('the polytope', self._lower, self._upper)
+        lower, upper = self._lower, self._upper = _bounds(normals, offsets)
+        check_bounds('the polytope', lower, upper)
+        self.data = PolytopeData(
+            normals, offsets, layout_of(normals), doubt(normals, offsets, lower, upper)
+        )
         #: Centre (dim,) of the largest ball inside, and its radius.
         self.centre, self.inner_radius = _largest_ball(normals, offsets)
         if self.inner_radius <= THINNEST * np.linalg.norm(self._upper - self._lower):
@@ -77,13 +62,13 @@ class PolytopeSpace(Space):
 
     def covers_box(self, lower: Floats, upper: Floats) -> bool:
         """Say whether every inequality holds at the corner where it is nearest to failing."""
-        normals, offsets = self.data
+        normals, offsets = self.data.normals, self.data.offsets
         worst = np.where(normals > 0.0, upper, lower)
         return bool(((normals * worst).sum(axis=1) <= offsets).all())
 
     def why_not_free(self, point: ArrayLike) -> str:
         """Say in words why ``point`` (dim,) is not free."""
-        normals, offsets = self.data
+        normals, offsets = self.data.normals, self.data.offsets
         excess = normals @ check_point('point', point, self.dim) - offsets
         k = int(np.argmax(excess))
         return f'outside the polytope: {excess[k]:g} beyond the plane of row {k} of a'
@@ -136,22 +121,26 @@ def _least(cost: Floats, normals: Floats, offsets: Floats) -> tuple[float, Float
     return float(found.fun), found.x
 
 
+@contains.register(PolytopeData)
 @kernel
 def _contains(polytope, x):
     return _holds(polytope, x, False)
 
 
+@touches.register(PolytopeData)
 @kernel
 def _touches(polytope, x):
     return _holds(polytope, x, True)
 
 
+@leave.register(PolytopeData)
 @kernel
 def _leave(polytope, x, u, t, enough):
     lower, upper = _span(polytope, x, u, False)
     return upper if lower < t < upper else t
 
 
+@enter.register(PolytopeData)
 @kernel
 def _enter(polytope, x, u, t):
     lower, upper = _span(polytope, x, u, True)
@@ -197,6 +186,3 @@ def _rate(polytope, k, u):
     for i in range(len(u)):
         rate += polytope.normals[k, i] * u[i]
     return rate
-
-
-register(PolytopeData, Primitives(_contains, _touches, _leave, _enter))

@@ -1,152 +1,101 @@
 """
 The primitives: what a compiled space answers, and all that walks and planners ask.
 
-A compiled space is a NamedTuple of arrays. For its type these kernels are registered:
-
-``contains(space, x) -> bool``
-    Whether ``x`` is a free point.
-``touches(space, x) -> bool``
-    Whether ``x`` is in the closure of the free points: free, or on the boundary.
-``leave(space, x, u, t, enough) -> float``
-    The first parameter ``s >= t`` at which the line ``x + s u`` leaves the space; ``t`` itself
-    where the line is out already. Once the line is known to stay inside until ``enough`` the
-    search may stop there: any value above ``enough`` is an answer.
-``enter(space, x, u, t) -> float``
-    The first parameter ``s >= t`` at which the line touches the space; inf where it never does.
-``component(space, x) -> int``
-    Which connected part of the space holds ``x``; 0 where it is not free. No path leads from one
-    part to another. A space that does not know its parts gives all free points the same number.
-``sees(space, a, b) -> bool``
-    Whether the closed segment from ``a`` to ``b`` is free: the chord goes beyond ``b``.
+A compiled space is a NamedTuple of arrays, and registers a kernel of its own for each primitive.
+Those with a body here follow from the others: a space registers them where it knows better.
 
 Leaving asks for the open set and entering for its closure: what is taken away from a space is
-closed, so that free space stays open. Compiled code calls the primitives by these names for any
-space: numba picks the kernel by the type of the NamedTuple. Interpreted code reaches the same
-kernels interpreted, so that both can be compared.
+closed, so that free space stays open.
 """
 
-from functools import cache
 import math
-from typing import Any, NamedTuple
+from typing import Any
 
-from hnr_planner.core.kernels import compiled_apart, interpreted, kernel
-from numba.core.dispatcher import Dispatcher
-from numba.extending import overload
+from hnr_planner.core.dispatch import dispatched
+from hnr_planner.core.kernels import kernel
 import numpy as np
 
 
+@dispatched
+@kernel
 def contains(space: Any, x: Any) -> bool:
     """Say whether ``x`` is a free point of ``space``."""
-    return interpreted(_PRIMITIVES[type(space)].contains)(space, x)
+    raise NotImplementedError
 
 
-def touches(space: Any, x: Any) -> bool:
-    """Say whether ``x`` is a free point of ``space`` or on its boundary."""
-    return interpreted(_PRIMITIVES[type(space)].touches)(space, x)
-
-
-def leave(space: Any, x: Any, u: Any, t: float, enough: float) -> float:
-    """Return the first parameter >= ``t`` at which the line ``x + s u`` leaves ``space``."""
-    return interpreted(_PRIMITIVES[type(space)].leave)(space, x, u, t, enough)
-
-
-def enter(space: Any, x: Any, u: Any, t: float) -> float:
-    """Return the first parameter >= ``t`` at which the line ``x + s u`` touches ``space``."""
-    return interpreted(_PRIMITIVES[type(space)].enter)(space, x, u, t)
-
-
-def component(space: Any, x: Any) -> int:
-    """Return the number of the connected part of ``space`` that holds ``x``; 0 for none."""
-    return interpreted(_PRIMITIVES[type(space)].component)(space, x)
-
-
-def sees(space: Any, a: Any, b: Any) -> bool:
-    """Say whether the closed segment from ``a`` to ``b`` is free."""
-    return interpreted(_PRIMITIVES[type(space)].sees)(space, a, b)
-
-
-@cache
-def _own(function: Dispatcher, space_type: Any) -> Dispatcher:
-    """
-    Compile a primitive apart for each type of space.
-
-    The primitives of a composed space call those of its parts, which may be composed as well: to
-    numba a kernel that calls itself for other types, which it cannot link.
-    """
-    return compiled_apart(function)
-
-
-@overload(contains)
-def _compiled_contains(space, x):
-    compiled = _own(_PRIMITIVES[space.instance_class].contains, space)
-    return lambda space, x: compiled(space, x)
-
-
-@overload(touches)
-def _compiled_touches(space, x):
-    compiled = _own(_PRIMITIVES[space.instance_class].touches, space)
-    return lambda space, x: compiled(space, x)
-
-
-@overload(leave)
-def _compiled_leave(space, x, u, t, enough):
-    compiled = _own(_PRIMITIVES[space.instance_class].leave, space)
-    return lambda space, x, u, t, enough: compiled(space, x, u, t, enough)
-
-
-@overload(enter)
-def _compiled_enter(space, x, u, t):
-    compiled = _own(_PRIMITIVES[space.instance_class].enter, space)
-    return lambda space, x, u, t: compiled(space, x, u, t)
-
-
-@overload(component)
-def _compiled_component(space, x):
-    compiled = _own(_PRIMITIVES[space.instance_class].component, space)
-    return lambda space, x: compiled(space, x)
-
-
-@overload(sees)
-def _compiled_sees(space, a, b):
-    compiled = _own(_PRIMITIVES[space.instance_class].sees, space)
-    return lambda space, a, b: compiled(space, a, b)
-
-
+@dispatched
 @kernel
-def _one_part(space, x):
+def touches(space: Any, x: Any) -> bool:
+    """Say whether ``x`` is in the closure of the free points: free, or on the boundary."""
+    raise NotImplementedError
+
+
+@dispatched
+@kernel
+def leave(space: Any, x: Any, u: Any, t: float, enough: float) -> float:
+    """
+    Return the first parameter ``s >= t`` at which the line ``x + s u`` leaves ``space``.
+
+    That is ``t`` itself where the line is out already. Once the line is known to stay inside until
+    ``enough`` the search may stop there: any value above ``enough`` is an answer.
+    """
+    raise NotImplementedError
+
+
+@dispatched
+@kernel
+def enter(space: Any, x: Any, u: Any, t: float) -> float:
+    """Return the first parameter ``s >= t`` at which the line touches ``space``; inf for never."""
+    raise NotImplementedError
+
+
+@dispatched
+@kernel
+def around(space: Any, x: Any, u: Any, back: Any) -> tuple[float, float]:
+    """
+    Return the largest open interval of ``x + s u`` around ``s = 0`` that is free.
+
+    For a free point ``x``; ``back`` is ``-u``.
+    """
+    return -leave(space, x, back, 0.0, math.inf), leave(space, x, u, 0.0, math.inf)
+
+
+@dispatched
+@kernel
+def apart(space: Any, x: Any, u: Any, back: Any) -> tuple[float, float]:
+    """
+    Return the largest open interval of ``x + s u`` around ``s = 0`` that does not touch ``space``.
+
+    For a point ``x`` that does not; the ends may be infinite, and ``back`` is ``-u``.
+    """
+    return -enter(space, x, back, 0.0), enter(space, x, u, 0.0)
+
+
+@dispatched
+@kernel
+def component(space: Any, x: Any) -> int:
+    """
+    Return the number of the connected part of ``space`` that holds ``x``; 0 where it is not free.
+
+    No path leads from one part to another. A space that does not know its parts gives all free
+    points the same number.
+    """
     return 1 if contains(space, x) else 0
 
 
+@dispatched
 @kernel
-def _sees_by_leaving(space, a, b):
+def sees(space: Any, a: Any, b: Any) -> bool:
+    """Say whether the closed segment from ``a`` to ``b`` is free: the chord goes beyond ``b``."""
     if not (contains(space, a) and contains(space, b)):
         return False
     u = b - a
     return not u.any() or leave(space, a, u, 0.0, 1.0) > 1.0
 
 
-class Primitives(NamedTuple):
-    """The kernels of one type of compiled space."""
-
-    contains: Dispatcher
-    touches: Dispatcher
-    leave: Dispatcher
-    enter: Dispatcher
-    component: Dispatcher = _one_part
-    sees: Dispatcher = _sees_by_leaving
-
-
-_PRIMITIVES: dict[type, Primitives] = {}
-
-
-def register(data_type: type, primitives: Primitives) -> None:
-    """Let the primitives answer for NamedTuples of ``data_type``."""
-    _PRIMITIVES[data_type] = primitives
-
-
 def kind_of(space: Any) -> tuple[Any, ...]:
     """Return what compiled code is made for: the type of a compiled space and of its parts."""
-    return (type(space), *(kind_of(part) for part in space if type(part) in _PRIMITIVES))
+    return (type(space), *(kind_of(part) for part in space if contains.knows(part)))
 
 
 @kernel
@@ -182,7 +131,7 @@ def chord(space, x, u):
     """Return the ends of the largest free interval of ``x + s u`` around ``s = 0``."""
     if not contains(space, x):
         return 0.0, 0.0
-    return -leave(space, x, -u, 0.0, math.inf), leave(space, x, u, 0.0, math.inf)
+    return around(space, x, u, -u)
 
 
 @kernel

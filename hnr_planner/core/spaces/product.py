@@ -8,16 +8,18 @@ from hnr_planner.core.checks import check_point, Floats
 from hnr_planner.core.kernels import kernel
 from hnr_planner.core.spaces.composed import check_parts
 from hnr_planner.core.spaces.primitives import (
+    component,
     contains,
     enter,
     leave,
-    Primitives,
-    register,
     touches,
 )
 from hnr_planner.core.spaces.space import Space
 import numpy as np
 from numpy.typing import ArrayLike
+
+#: No factor has more parts than this.
+PARTS_MAX = 2**31
 
 
 class ProductData(NamedTuple):
@@ -92,18 +94,21 @@ class ProductSpace(Space):
         return 'not in the space'
 
 
+@contains.register(ProductData)
 @kernel
 def _contains(product, x):
     k = product.split
     return contains(product.one, x[:k]) and contains(product.other, x[k:])
 
 
+@touches.register(ProductData)
 @kernel
 def _touches(product, x):
     k = product.split
     return touches(product.one, x[:k]) and touches(product.other, x[k:])
 
 
+@leave.register(ProductData)
 @kernel
 def _leave(product, x, u, t, enough):
     """Leave the factor that is left first."""
@@ -120,6 +125,7 @@ def _leave(product, x, u, t, enough):
     return end
 
 
+@enter.register(ProductData)
 @kernel
 def _enter(product, x, u, t):
     """Go on to where the other factor is entered, until both are at once."""
@@ -139,4 +145,10 @@ def _enter(product, x, u, t):
     return s
 
 
-register(ProductData, Primitives(_contains, _touches, _leave, _enter))
+@component.register(ProductData)
+@kernel
+def _component(product, x):
+    """Return a number for each pair of parts."""
+    k = product.split
+    one, other = component(product.one, x[:k]), component(product.other, x[k:])
+    return one + PARTS_MAX * (other - 1) if one > 0 and other > 0 else 0

@@ -7,10 +7,10 @@ from hnr_planner.core.checks import check_point, check_points, check_real, Float
 from hnr_planner.core.errors import SpaceError
 from hnr_planner.core.kernels import kernel
 from hnr_planner.core.spaces.ball import BallSpace
-from hnr_planner.core.spaces.bounds import check_bounds
+from hnr_planner.core.spaces.bounds import check_bounds, within
 from hnr_planner.core.spaces.box import BoxSpace
 from hnr_planner.core.spaces.polynomials import next_change, value
-from hnr_planner.core.spaces.primitives import Primitives, register
+from hnr_planner.core.spaces.primitives import contains, enter, leave, touches
 from hnr_planner.core.spaces.space import Space
 import numpy as np
 from numpy.typing import ArrayLike
@@ -185,11 +185,13 @@ def _rounding(base: BallSpace | BoxSpace, bend: float) -> float:
     return ROUNDING * size * (half if isinstance(base, BallSpace) else 1.0)
 
 
+@contains.register(ShearedData)
 @kernel
 def _contains(sheared, x):
     return _holds(sheared, x, False)
 
 
+@touches.register(ShearedData)
 @kernel
 def _touches(sheared, x):
     return _holds(sheared, x, True)
@@ -205,10 +207,11 @@ def _holds(sheared, x, closed):
     return True
 
 
+@leave.register(ShearedData)
 @kernel
 def _leave(sheared, x, u, t, enough):
     """Leave at the first inequality that fails."""
-    _, last = _within(sheared, x, u)
+    _, last = within(sheared.begin, sheared.end, x, u)
     if t >= last:
         return t
     coefficients, rounding, s = np.empty(5), sheared.rounding, math.inf
@@ -220,10 +223,11 @@ def _leave(sheared, x, u, t, enough):
     return s
 
 
+@enter.register(ShearedData)
 @kernel
 def _enter(sheared, x, u, t):
     """Go on to where an inequality holds that does not, until all hold at once."""
-    first, last = _within(sheared, x, u)
+    first, last = within(sheared.begin, sheared.end, x, u)
     coefficients, rounding = np.empty(5), sheared.rounding
     s, k, held = max(t, first), 0, 0
     while held < _count(sheared):
@@ -235,20 +239,6 @@ def _enter(sheared, x, u, t):
             s, held = next_change(coefficients[:end], s, last, True, rounding), 1
         k = (k + 1) % _count(sheared)
     return s
-
-
-@kernel
-def _within(sheared, x, u):
-    """Return where a line comes into the box around the image, and where it goes out."""
-    first, last = -math.inf, math.inf
-    for i in range(len(x)):
-        below, above = sheared.begin[i] - x[i], sheared.end[i] - x[i]
-        if u[i] != 0.0:
-            first = max(first, min(below / u[i], above / u[i]))
-            last = min(last, max(below / u[i], above / u[i]))
-        elif not below <= 0.0 <= above:
-            return math.inf, -math.inf
-    return first, last
 
 
 @kernel
@@ -287,6 +277,3 @@ def _write(sheared, k, x, u, coefficients):
     else:
         c[0], c[1], c[2] = sheared.lower[i] - c[0], -c[1], -c[2]
     return 2 if i == n - 1 else 1
-
-
-register(ShearedData, Primitives(_contains, _touches, _leave, _enter))

@@ -5,28 +5,23 @@ Whether a point is free changes only where the curve crosses one of those surfac
 parameters are found, as roots, and put in order: between two of them the middle stands for all.
 What is composed of such spaces has the surfaces of all its parts. A curve that touches a surface
 and stays on its side is not held up by it.
-
-``mark(space, curve, end, marks, n) -> int``
-    Write the parameters in [0, ``end``] at which the curve meets a surface, from index ``n`` on as
-    far as there is room, and return how many there are with those before.
-``slack(space) -> float``
-    What may lie between two parts of the space for a curve to pass.
 """
 
 import math
-from typing import Any, NamedTuple
+from typing import Any
 
-from hnr_planner.core.kernels import interpreted, kernel
+from hnr_planner.core.dispatch import dispatched
+from hnr_planner.core.kernels import kernel
 from hnr_planner.core.spaces.ball import BallData
 from hnr_planner.core.spaces.box import BoxData
 from hnr_planner.core.spaces.curves import (
     along,
     Arc,
     coordinate,
+    leave_curve,
     Parabola,
     point_at,
     reach,
-    register_curves,
     turn,
 )
 from hnr_planner.core.spaces.difference import DifferenceData
@@ -35,56 +30,29 @@ from hnr_planner.core.spaces.polynomials import next_change
 from hnr_planner.core.spaces.polytope import PolytopeData
 from hnr_planner.core.spaces.primitives import contains
 from hnr_planner.core.spaces.union import UnionData
-from numba.core.dispatcher import Dispatcher
-from numba.extending import overload
 import numpy as np
 
 #: Room for marks at first.
 ROOM = 64
 
 
-class Surfaces(NamedTuple):
-    """The kernels of one kind of space."""
-
-    mark: Dispatcher
-    slack: Dispatcher
-
-
-_SURFACES: dict[type, Surfaces] = {}
-
-
-def register_surfaces(data_type: type, surfaces: Surfaces) -> None:
-    """Let curves leave spaces of ``data_type`` at their surfaces."""
-    _SURFACES[data_type] = surfaces
-    register_curves(data_type, _leave_curve, _has_surfaces)
-
-
-def _has_surfaces(data: Any) -> bool:
-    """Say whether a compiled space and all its parts have surfaces."""
-    parts = [part for part in data if isinstance(part, tuple)]
-    return type(data) in _SURFACES and all(map(_has_surfaces, parts))
-
-
+@dispatched
+@kernel
 def mark(space: Any, curve: Any, end: float, marks: Any, n: int) -> int:
-    """Write where a curve meets a surface of ``space``; see above."""
-    return interpreted(_SURFACES[type(space)].mark)(space, curve, end, marks, n)
+    """
+    Write the parameters in [0, ``end``] at which the curve meets a surface of ``space``.
+
+    They go to ``marks`` from index ``n`` on, as far as there is room; returns how many there are
+    with those before.
+    """
+    raise NotImplementedError
 
 
+@dispatched
+@kernel
 def slack(space: Any) -> float:
-    """Return what may lie between two parts of ``space``."""
-    return interpreted(_SURFACES[type(space)].slack)(space)
-
-
-@overload(mark)
-def _compiled_mark(space, curve, end, marks, n):
-    compiled = _SURFACES[space.instance_class].mark
-    return lambda space, curve, end, marks, n: compiled(space, curve, end, marks, n)
-
-
-@overload(slack)
-def _compiled_slack(space):
-    compiled = _SURFACES[space.instance_class].slack
-    return lambda space: compiled(space)
+    """Return what may lie between two parts of ``space`` for a curve to pass."""
+    return 0.0
 
 
 @kernel
@@ -136,6 +104,14 @@ def _mark_value(f, value, end, marks, n):
     return n
 
 
+@dispatched
+@kernel
+def mark_sphere(curve: Any, centre: Any, radius: float, end: float, marks: Any, n: int) -> int:
+    """Write where a curve meets a sphere; likewise."""
+    raise NotImplementedError
+
+
+@mark_sphere.register(Parabola)
 @kernel
 def _mark_sphere_on_parabola(curve, centre, radius, end, marks, n):
     """Find the changes of |x + v t + a t^2 / 2 - c|^2 - r^2, of order four."""
@@ -157,6 +133,7 @@ def _mark_sphere_on_parabola(curve, centre, radius, end, marks, n):
     return n
 
 
+@mark_sphere.register(Arc)
 @kernel
 def _mark_sphere_on_arc(curve, centre, radius, end, marks, n):
     """
@@ -186,23 +163,7 @@ def _mark_sphere_on_arc(curve, centre, radius, end, marks, n):
     return _mark_value(along(curve, normal), value, end, marks, n)
 
 
-_MARK_SPHERE = {Parabola: _mark_sphere_on_parabola, Arc: _mark_sphere_on_arc}
-
-
-def mark_sphere(curve: Any, centre: Any, radius: float, end: float, marks: Any, n: int) -> int:
-    """Write where a curve meets a sphere; likewise."""
-    chosen = interpreted(_MARK_SPHERE[type(curve)])
-    return chosen(curve, centre, radius, end, marks, n)
-
-
-@overload(mark_sphere)
-def _compiled_mark_sphere(curve, centre, radius, end, marks, n):
-    compiled = _MARK_SPHERE[curve.instance_class]
-    return lambda curve, centre, radius, end, marks, n: compiled(
-        curve, centre, radius, end, marks, n
-    )
-
-
+@mark.register(BoxData)
 @kernel
 def _mark_boxes(boxes, curve, end, marks, n):
     for k in range(len(boxes.lower)):
@@ -213,6 +174,7 @@ def _mark_boxes(boxes, curve, end, marks, n):
     return n
 
 
+@mark.register(PolytopeData)
 @kernel
 def _mark_polytope(polytope, curve, end, marks, n):
     for k in range(len(polytope.offsets)):
@@ -221,6 +183,7 @@ def _mark_polytope(polytope, curve, end, marks, n):
     return n
 
 
+@mark.register(PolygonData)
 @kernel
 def _mark_edges(polygon, curve, end, marks, n):
     """Take the whole line of each edge: marks that are none do no harm."""
@@ -234,6 +197,7 @@ def _mark_edges(polygon, curve, end, marks, n):
     return n
 
 
+@mark.register(BallData)
 @kernel
 def _mark_balls(balls, curve, end, marks, n):
     for k in range(len(balls.radii)):
@@ -241,41 +205,38 @@ def _mark_balls(balls, curve, end, marks, n):
     return n
 
 
+@mark.register(UnionData)
 @kernel
 def _mark_union(union, curve, end, marks, n):
     n = mark(union.one, curve, end, marks, n)
     return mark(union.other, curve, end, marks, n)
 
 
+@mark.register(DifferenceData)
 @kernel
 def _mark_difference(difference, curve, end, marks, n):
     n = mark(difference.base, curve, end, marks, n)
     return mark(difference.removed, curve, end, marks, n)
 
 
+@slack.register(BoxData)
+@slack.register(BallData)
 @kernel
 def _own_gap(space):
     return space.gap
 
 
-@kernel
-def _no_gap(space):
-    return 0.0
-
-
+@slack.register(UnionData)
 @kernel
 def _gap_of_union(union):
     return max(union.gap, max(slack(union.one), slack(union.other)))
 
 
+@slack.register(DifferenceData)
 @kernel
 def _gap_of_base(difference):
     return slack(difference.base)
 
 
-register_surfaces(BoxData, Surfaces(_mark_boxes, _own_gap))
-register_surfaces(BallData, Surfaces(_mark_balls, _own_gap))
-register_surfaces(PolytopeData, Surfaces(_mark_polytope, _no_gap))
-register_surfaces(PolygonData, Surfaces(_mark_edges, _no_gap))
-register_surfaces(UnionData, Surfaces(_mark_union, _gap_of_union))
-register_surfaces(DifferenceData, Surfaces(_mark_difference, _gap_of_base))
+for data_type in (BoxData, BallData, PolytopeData, PolygonData, UnionData, DifferenceData):
+    leave_curve.register(data_type)(_leave_curve)

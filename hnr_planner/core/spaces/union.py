@@ -13,8 +13,6 @@ from hnr_planner.core.spaces.primitives import (
     contains,
     enter,
     leave,
-    Primitives,
-    register,
     touches,
 )
 from hnr_planner.core.spaces.space import Space
@@ -75,6 +73,11 @@ class UnionSpace(Space):
         lower, upper = zip(*(part.bounds for part in self.parts), strict=True)
         return np.min(lower, axis=0), np.max(upper, axis=0)
 
+    @property
+    def typical_clearance(self) -> float:
+        """Mean of those of the parts, in the caller's units."""
+        return float(np.mean([part.typical_clearance * part.scale for part in self.parts]))
+
     def covers_box(self, lower: Floats, upper: Floats) -> bool:
         """Say whether one of the parts is known to."""
         return any(part.covers_box(lower, upper) for part in self.parts)
@@ -95,16 +98,19 @@ def _joined(leaves: Iterable[Any], gap: float) -> Any:
     return reduce(lambda one, other: UnionData(one, other, gap), parts)
 
 
+@contains.register(UnionData)
 @kernel
 def _contains(union, x):
     return contains(union.one, x) or contains(union.other, x)
 
 
+@touches.register(UnionData)
 @kernel
 def _touches(union, x):
     return touches(union.one, x) or touches(union.other, x)
 
 
+@leave.register(UnionData)
 @kernel
 def _leave(union, x, u, t, enough):
     """Go to the end of a part that holds the line at ``t``, and on in one that reaches on."""
@@ -124,9 +130,7 @@ def _leave(union, x, u, t, enough):
     return s
 
 
+@enter.register(UnionData)
 @kernel
 def _enter(union, x, u, t):
     return min(enter(union.one, x, u, t), enter(union.other, x, u, t))
-
-
-register(UnionData, Primitives(_contains, _touches, _leave, _enter))

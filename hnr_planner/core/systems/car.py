@@ -15,7 +15,15 @@ from hnr_planner.core.kernels import kernel
 from hnr_planner.core.spaces.curves import Arc, at, coordinate, leave_curve
 from hnr_planner.core.spaces.space import Space
 from hnr_planner.core.systems.limits import check_limit
-from hnr_planner.core.systems.primitives import moved, register_system, SystemPrimitives
+from hnr_planner.core.systems.primitives import (
+    brake,
+    contact,
+    halt,
+    move,
+    moved,
+    steer,
+    velocity,
+)
 from hnr_planner.core.systems.system import ROUNDING, vectors_to_kernel
 import numpy as np
 from numpy.typing import ArrayLike
@@ -144,6 +152,7 @@ def _turn(space: Space) -> float:
     return math.atan2(y, x)
 
 
+@move.register(CarData)
 @kernel
 def _move(system, state, control, duration, end):
     way = duration * (state[SPEED] + duration * control[0] / 2.0)
@@ -154,6 +163,7 @@ def _move(system, state, control, duration, end):
     end[X], end[Y] = x, y
 
 
+@contact.register(CarData)
 @kernel
 def _contact(system, space, state, control, duration):
     """Follow the arc to where the speed changes its sign, if it does, and back from there."""
@@ -186,6 +196,7 @@ def _one_way(space, state, control, duration):
     return min(2.0 * left / (speed + math.sqrt(squared)), duration)
 
 
+@steer.register(CarData)
 @kernel
 def _steer(system, state, position, velocity, weight, duration, control):
     """
@@ -207,6 +218,7 @@ def _steer(system, state, position, velocity, weight, duration, control):
     control[0] = min(max(change, -system.max_acceleration), system.max_acceleration)
 
 
+@brake.register(CarData)
 @kernel
 def _brake(system, state, control):
     control[0] = -math.copysign(system.max_acceleration, state[SPEED])
@@ -214,15 +226,14 @@ def _brake(system, state, control):
     return abs(state[SPEED]) / system.max_acceleration
 
 
+@halt.register(CarData)
 @kernel
 def _halt(system, state):
     state[SPEED] = 0.0
 
 
+@velocity.register(CarData)
 @kernel
 def _velocity(system, state, out):
     out[0] = state[SPEED] * math.cos(state[HEADING])
     out[1] = state[SPEED] * math.sin(state[HEADING])
-
-
-register_system(CarData, SystemPrimitives(_move, _contact, _steer, _brake, _halt, _velocity))

@@ -16,7 +16,15 @@ from hnr_planner.core.lengths import norm
 from hnr_planner.core.spaces.curves import leave_curve, Parabola
 from hnr_planner.core.spaces.space import Space
 from hnr_planner.core.systems.limits import check_limit
-from hnr_planner.core.systems.primitives import moved, register_system, SystemPrimitives
+from hnr_planner.core.systems.primitives import (
+    brake,
+    contact,
+    halt,
+    move,
+    moved,
+    steer,
+    velocity,
+)
 from hnr_planner.core.systems.system import ROUNDING, vectors_from_kernel, vectors_to_kernel
 import numpy as np
 from numpy.typing import ArrayLike
@@ -142,6 +150,7 @@ class DoubleIntegrator:
         return vectors_from_kernel(space, controls)
 
 
+@move.register(DoubleIntegratorData)
 @kernel
 def _move(system, state, control, duration, end):
     dim = len(control)
@@ -151,12 +160,14 @@ def _move(system, state, control, duration, end):
         end[dim + i] = state[dim + i] + change
 
 
+@contact.register(DoubleIntegratorData)
 @kernel
 def _contact(system, space, state, control, duration):
     dim = len(control)
     return leave_curve(space, Parabola(state[:dim], state[dim:], control), duration)
 
 
+@steer.register(DoubleIntegratorData)
 @kernel
 def _steer(system, state, position, velocity, weight, duration, control):
     """
@@ -235,6 +246,7 @@ def _speed_after(velocity, duration, control):
     return math.sqrt(squared)
 
 
+@brake.register(DoubleIntegratorData)
 @kernel
 def _brake(system, state, control):
     dim = len(control)
@@ -244,18 +256,15 @@ def _brake(system, state, control):
     return speed / system.max_acceleration
 
 
+@halt.register(DoubleIntegratorData)
 @kernel
 def _halt(system, state):
     half = len(state) // 2
     state[half:] = 0.0
 
 
+@velocity.register(DoubleIntegratorData)
 @kernel
 def _velocity(system, state, out):
     for i in range(len(out)):
         out[i] = state[len(out) + i]
-
-
-register_system(
-    DoubleIntegratorData, SystemPrimitives(_move, _contact, _steer, _brake, _halt, _velocity)
-)

@@ -40,7 +40,7 @@ def corners(space: Space) -> Corners:
     if isinstance(space, BoxSpace) and space.dim == 2:
         return Corners(np.array(list(itertools.product(*zip(*space.bounds, strict=True)))), none)
     if isinstance(space, PolytopeSpace) and space.dim == 2:
-        return Corners(_polytope_corners(*space.data), none)
+        return Corners(_polytope_corners(space.data.normals, space.data.offsets), none)
     return Corners(none, none)
 
 

@@ -64,7 +64,7 @@ def test_a_chain_of_sixty_thousand_vertices_becomes_a_hundred():
     cells = np.argwhere(space.largest_component())
     ends = space.cell_centres(*cells[[0, -1]].T)
     path = plan(
-        space, *ends, algorithm='hit_and_run', seed=0, time_limit=60.0, simplify=False
+        space, *ends, algorithm='hit_and_run', seed=4, time_limit=60.0, simplify=False
     ).path
     assert len(path) > 60_000
     shorter = simplify(space, path, seed=0)

@@ -4,10 +4,13 @@ The walks of the package obey their law, on sets that are not convex, in 2, 3 an
 Every p-value is compared with ALPHA; the seeds are fixed.
 """
 
+from test.core.sampling.chain_steps import step_of
 from test.core.sampling.gate_sets import GateSet, SETS
 from test.sampling_gate import (
     ALPHA,
+    ball_step,
     one_step,
+    same_ball_step,
     same_law,
     t1_uniform_on_the_square,
     t2_stationarity,
@@ -15,35 +18,18 @@ from test.sampling_gate import (
     t5_ends,
 )
 
-from hnr_planner.core import GridSpace, sample
-from hnr_planner.core.kernels import kernel
-from hnr_planner.core.sampling.walks import coordinate_hit_and_run_step, hit_and_run_step
-from hnr_planner.core.streams import stream
+from hnr_planner.core import BallWalk, GridSpace, sample, WALKS
 import numpy as np
 import pytest
 from scipy import stats
 
 N_ONE_STEP = 1_000_000
 N_STATIONARITY = 100_000
+N_BALL = 200_000
 N_REVERSIBILITY = 200_000
 N_CHAINS = 2_000
 
-
-@kernel
-def _hit_and_run(data, points, rng, moved):
-    for k in range(len(points)):
-        hit_and_run_step(data, points[k], rng, moved[k])
-
-
-@kernel
-def _coordinate_hit_and_run(data, points, rng, moved):
-    for k in range(len(points)):
-        coordinate_hit_and_run_step(data, points[k], rng, moved[k])
-
-
-WALKS = pytest.mark.parametrize(
-    'walk', [_hit_and_run, _coordinate_hit_and_run], ids=['hit_and_run', 'coordinate_hit_and_run']
-)
+EACH_WALK = pytest.mark.parametrize('walk', WALKS)
 ONE_STEP = pytest.mark.parametrize(
     ('name', 'k'),
     [(name, k) for name, gate_set in SETS.items() for k in range(len(gate_set().points))],
@@ -55,23 +41,11 @@ def gate_set(request) -> GateSet:
     return SETS[request.param]()
 
 
-def step_of(walk, space):
-    """Return one step of the package's walk in a space."""
-
-    def step(points, rng):
-        at = space.to_kernel(points)
-        moved = np.empty_like(at)
-        walk(space.data, at, stream(int(rng.integers(2**63))), moved)
-        return space.from_kernel(moved)
-
-    return step
-
-
 @ONE_STEP
 def test_one_step_of_hit_and_run(name, k):
     """T1 and T5: uniform over directions and over the chord, up to its very ends."""
     region, space, points = SETS[name]()
-    step = step_of(_hit_and_run, space)
+    step = step_of('hit_and_run', space)
     directions, position = one_step(region, step, points[k], N_ONE_STEP, seed=k)
     assert t1_uniform_on_the_square(directions, position) > ALPHA
     assert t5_ends(position) > ALPHA
@@ -81,7 +55,7 @@ def test_one_step_of_hit_and_run(name, k):
 def test_one_step_of_coordinate_hit_and_run(name, k):
     """Any axis as often as any other, and uniform on the chord."""
     region, space, points = SETS[name]()
-    step = step_of(_coordinate_hit_and_run, space)
+    step = step_of('coordinate_hit_and_run', space)
     directions, position = one_step(region, step, points[k], N_STATIONARITY, seed=k)
     axis = directions.argmax(axis=1)
     assert (np.abs(directions).sum(axis=1) == 1.0).all()
@@ -91,14 +65,31 @@ def test_one_step_of_coordinate_hit_and_run(name, k):
     assert t5_ends(position) > ALPHA
 
 
-@WALKS
+@pytest.mark.parametrize('segment_visible', [False, True], ids=['end point', 'segment'])
+def test_the_ball_walk_is_the_one_of_its_definition(gate_set, segment_visible):
+    """
+    One step in direction and length, stays included; then T2 and T3.
+
+    The ball is so large that it reaches past walls: which version it is, shows.
+    """
+    region, space, points = gate_set
+    radius = 0.7 * (region.upper - region.lower).min()
+    step = step_of(BallWalk(radius, segment_visible=segment_visible), space)
+    right = ball_step(region, radius, segment_visible=segment_visible)
+    for k, point in enumerate(points):
+        assert same_ball_step(step, right, point, radius, N_BALL, seed=k) > ALPHA
+    assert t2_stationarity(region, step, N_STATIONARITY, seed=5) > ALPHA
+    assert t3_reversibility(region, step, N_REVERSIBILITY, seed=6) > ALPHA
+
+
+@EACH_WALK
 def test_a_walk_keeps_the_uniform_law(gate_set, walk):
     """T2."""
     step = step_of(walk, gate_set.space)
     assert t2_stationarity(gate_set.region, step, N_STATIONARITY, seed=5) > ALPHA
 
 
-@WALKS
+@EACH_WALK
 def test_a_walk_is_reversible(gate_set, walk):
     """T3."""
     step = step_of(walk, gate_set.space)

@@ -1,0 +1,37 @@
+"""One step of a walk of the package, from each of many points."""
+
+from collections.abc import Callable
+
+from hnr_planner.core import Space
+from hnr_planner.core.checks import Floats
+from hnr_planner.core.kernels import kernel
+from hnr_planner.core.sampling.chains import new_chain
+from hnr_planner.core.sampling.steps import make_walk, take_step, Walk
+from hnr_planner.core.spaces.places import place, remember
+from hnr_planner.core.streams import stream
+import numpy as np
+
+Step = Callable[[Floats, np.random.Generator], Floats]
+
+
+def step_of(walk: str | Walk, space: Space, n_steps: int = 1) -> Step:
+    """Return what takes points (k, dim), caller's frame, some steps of a walk on."""
+    compiled = make_walk(walk).compiled(space)
+
+    def step(points: Floats, rng: np.random.Generator) -> Floats:
+        moved = space.to_kernel(points)
+        chain = new_chain(space, moved[0].copy(), stream(int(rng.integers(2**63))))
+        u = np.zeros(space.dim)
+        _step_from_each(space.data, compiled, moved, chain, u, n_steps)
+        return space.from_kernel(moved)
+
+    return step
+
+
+@kernel
+def _step_from_each(space, walk, points, chain, u, n_steps):
+    for k in range(len(points)):
+        here = place(space, points[k], chain.memory)
+        remember(space, here)
+        for _ in range(n_steps):
+            take_step(walk, space, here, u, chain.rng, chain.counts)
