@@ -8,13 +8,23 @@ NONE = -1
 
 
 @kernel
-def branch(samples, parents, k):
-    """Return the samples (m, dim) from the root of sample ``k`` to ``k``; (0, dim) for NONE."""
+def rows_to(parents, k):
+    """Return the rows (m,) from the root of row ``k`` to ``k``; (0,) for NONE."""
     length, row = 0, k
     while row != NONE:
         length, row = length + 1, parents[row]
-    points, row = np.empty((length, samples.shape[1])), k
+    rows, row = np.empty(length, dtype=np.int64), k
     for i in range(length - 1, -1, -1):
-        points[i] = samples[row]
+        rows[i] = row
         row = parents[row]
+    return rows
+
+
+@kernel
+def branch(samples, parents, k):
+    """Return the samples (m, dim) from the root of sample ``k`` to ``k``; (0, dim) for NONE."""
+    rows = rows_to(parents, k)
+    points = np.empty((len(rows), samples.shape[1]))
+    for i in range(len(rows)):
+        points[i] = samples[rows[i]]
     return points

@@ -5,20 +5,24 @@ Each attempt has random streams of its own, so that none depends on how many cam
 how long they took.
 """
 
+from collections.abc import Callable
 import itertools
 import math
 import time
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 from hnr_planner.core.checks import Floats
 from hnr_planner.core.lengths import path_length
 from hnr_planner.core.planning.limits import Limits
 from hnr_planner.core.planning.request import Request
 from hnr_planner.core.planning.result import FirstSolution, PlannerStatus
-from hnr_planner.core.planning.search import Search
+from hnr_planner.core.planning.search import PathSearch, Search
 from hnr_planner.core.planning.simplify import shorten
 from hnr_planner.core.planning.stand_off import path_cost, stand_off
 import numpy as np
+
+SearchType = TypeVar('SearchType', bound=Search)
+Answer = TypeVar('Answer')
 
 #: What random streams are for: to search, to shorten what was found.
 SEARCH, SHORTEN = 0, 1
@@ -31,7 +35,7 @@ class Attempt(NamedTuple):
     Attributes
     ----------
     status : PlannerStatus
-    search : Search
+    search : PathSearch
     path : (m, dim)
         Caller's frame; (0, dim) when there is none.
     cost : float
@@ -41,7 +45,7 @@ class Attempt(NamedTuple):
     """
 
     status: PlannerStatus
-    search: Search
+    search: PathSearch
     path: Floats
     cost: float
     first: FirstSolution | None
@@ -75,7 +79,7 @@ def attempt(
 
 
 def _bettered(
-    request: Request, number: int, search: Search, path: Floats, limits: Limits
+    request: Request, number: int, search: PathSearch, path: Floats, limits: Limits
 ) -> tuple[Floats, float]:
     """Return a path (m, dim) shortened and moved away from walls as was asked, and its cost."""
     if request.simplify and not search.taut and len(path) > 2:
@@ -109,24 +113,54 @@ def with_clearance(request: Request, path: Floats, limits: Limits) -> Floats:
     return stand_off(request.space, path, request.clearance, limits)
 
 
-def _search(request: Request, number: int, limits: Limits) -> tuple[PlannerStatus, Search, Floats]:
+def _search(
+    request: Request, number: int, limits: Limits
+) -> tuple[PlannerStatus, PathSearch, Floats]:
+    """Search for a path (m, dim) that is free in the caller's coordinates."""
+
+    def start(salt: int) -> PathSearch:
+        return request.planner.start(request.problem, request.stream(number, SEARCH, salt))
+
+    def free_path(search: PathSearch) -> Floats | None:
+        path = _in_caller_s_frame(request, search.path)
+        return path if request.space.is_path_free(path) else None
+
+    status, search, path = search_until_free(start, free_path, limits)
+    return status, search, np.empty((0, request.space.dim)) if path is None else path
+
+
+def search_until_free(
+    start: Callable[[int], SearchType],
+    answer_of: Callable[[SearchType], Answer | None],
+    limits: Limits,
+) -> tuple[PlannerStatus, SearchType, Answer | None]:
     """
-    Search for a path (m, dim) that is free in the caller's coordinates.
+    Search until an answer is free in the caller's coordinates, or a limit is met.
 
     One so close to a corner that those coordinates round it into the obstacle is none: then the
-    search begins again.
+    search begins again, from another stream.
+
+    Parameters
+    ----------
+    start : callable
+        Starts the search of a number, 0 for the first.
+    answer_of : callable
+        Returns the answer of a solved search, None when it is not free.
+    limits : Limits
+        Of all searches together.
+
     """
     for salt in itertools.count():
-        search = request.planner.start(request.problem, request.stream(number, SEARCH, salt))
+        search = start(salt)
         status = limits.run(search)
         if status is PlannerStatus.SOLVED:
-            path = _in_caller_s_frame(request, search.path)
-            if request.space.is_path_free(path):
-                return status, search, path
+            answer = answer_of(search)
+            if answer is not None:
+                return status, search, answer
             status = limits.stop() or status
         if status is not PlannerStatus.SOLVED:
             break
-    return status, search, np.empty((0, request.space.dim))
+    return status, search, None
 
 
 def _in_caller_s_frame(request: Request, points: Floats) -> Floats:

@@ -91,7 +91,7 @@ class Search(Protocol):
 
     @property
     def solved(self) -> bool:
-        """Whether a path is known."""
+        """Whether what it searches for is known."""
 
     @property
     def samples(self) -> Floats:
@@ -102,19 +102,23 @@ class Search(Protocol):
         """Index (k,) of the sample that each was reached from; -1 for the roots."""
 
     @property
+    def counts(self) -> dict[str, int]:
+        """What else was counted, by name."""
+
+    def advance(self, n_iterations: int) -> None:
+        """Handle at most ``n_iterations`` further transitions, fewer once solved."""
+
+
+class PathSearch(Search, Protocol):
+    """A search for a path."""
+
+    @property
     def path(self) -> Floats:
         """Path (m, dim) of a solved search: from the start into the region, or to the goal."""
 
     @property
     def taut(self) -> bool:
         """Whether the path of a solved search is as short as pulling could make it."""
-
-    @property
-    def counts(self) -> dict[str, int]:
-        """What else was counted, by name."""
-
-    def advance(self, n_iterations: int) -> None:
-        """Handle at most ``n_iterations`` further transitions, fewer once solved."""
 
 
 class Planner(Protocol):
@@ -124,7 +128,7 @@ class Planner(Protocol):
     def name(self) -> str:
         """Name in ``plan``'s table of algorithms."""
 
-    def start(self, problem: Problem, rng: Stream) -> Search:
+    def start(self, problem: Problem, rng: Stream) -> PathSearch:
         """Start a search."""
 
 

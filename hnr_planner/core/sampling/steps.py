@@ -17,7 +17,7 @@ from hnr_planner.core.checks import check_choice, check_positive
 from hnr_planner.core.dispatch import dispatched
 from hnr_planner.core.errors import RequestError
 from hnr_planner.core.kernels import inlined, kernel
-from hnr_planner.core.sampling.walks import draw_direction, REDRAWS_MAX
+from hnr_planner.core.sampling.walks import draw_direction, draw_in_ball, REDRAWS_MAX
 from hnr_planner.core.spaces.places import (
     chord_at,
     move_along,
@@ -209,10 +209,8 @@ def _draw_on_zero_chord(space, place, u, axis, lower, upper, rng, counts):
 @take_step.register(BallStep)
 @inlined
 def _step_in_the_ball(walk, space, place, u, rng, counts):
-    draw_direction(rng, u)
-    length = walk.radius * uniform(rng) ** (1.0 / len(u))
+    draw_in_ball(walk.radius, rng, u)
     for i in range(len(u)):
-        u[i] *= length
         place.y[i] = place.x[i] + u[i]
     if walk.segment_visible and not leave(space, place.x, u, 0.0, 1.0) > 1.0:
         return

@@ -36,6 +36,15 @@ def draw_direction(rng, u):
         u[i] *= scale
 
 
+@inlined
+def draw_in_ball(radius, rng, u):
+    """Draw ``u`` uniformly from the ball around the origin."""
+    draw_direction(rng, u)
+    length = radius * uniform(rng) ** (1.0 / len(u))
+    for i in range(len(u)):
+        u[i] *= length
+
+
 @kernel
 def draw_on_chord(space, x, u, rng, y):
     """Draw ``y`` uniformly from the chord of ``x`` along ``u``; return the draws thrown away."""

@@ -26,9 +26,9 @@ from hnr_planner.core.planning.kinodynamic.problem import (
 from hnr_planner.core.planning.kinodynamic.steps import can_brake, first_step, motion_to, Steps
 from hnr_planner.core.planning.search import (
     compile_search,
+    PathSearch,
     Problem,
     reaches_goal,
-    Search,
     to_goal,
     with_room,
 )
@@ -67,14 +67,13 @@ class KinodynamicConnectSearch:
 
     problem: KinodynamicProblem
     rng: Stream
-    taut: ClassVar[bool] = False
     _n_rows: int = field(init=False, default=1)
     _steps: Steps = field(init=False)
     _n_braking: int = field(init=False, default=0)
     #: Row of the table that is at rest, the problem of going on from there, and its search.
     _rest: int = field(init=False, default=NONE)
     _place: Problem = field(init=False)
-    _way: Search | None = field(init=False, default=None)
+    _way: PathSearch | None = field(init=False, default=None)
     _at_once: bool = field(init=False, default=False)
 
     def __post_init__(self) -> None:
@@ -109,11 +108,6 @@ class KinodynamicConnectSearch:
     def counts(self) -> dict[str, int]:
         """Steps that it took to come to rest."""
         return {'braking_steps': self._n_braking}
-
-    @property
-    def path(self) -> Floats:
-        """Positions (m, dim) along the motion."""
-        return self.motion.states[:, : len(self.problem.place.goal)]
 
     @property
     def motion(self) -> Motion:

@@ -12,12 +12,11 @@ from hnr_planner.core.borrowed import borrowed
 from hnr_planner.core.kernels import kernel
 from hnr_planner.core.planning.kinodynamic.problem import KinodynamicProblem
 from hnr_planner.core.planning.kinodynamic.steps import (
-    draw_velocity,
     drive,
     DrivenPlanner,
     DrivenSearch,
 )
-from hnr_planner.core.sampling.walks import hit_and_run_step
+from hnr_planner.core.sampling.walks import draw_in_ball, hit_and_run_step
 from hnr_planner.core.streams import Stream
 import numpy as np
 
@@ -58,7 +57,7 @@ def _walk(problem, driving, rng, steps, n_rows, n_iterations):
     position, velocity = np.empty(dim), np.empty(dim)
     for k in range(n_iterations):
         hit_and_run_step(place.space, steps.states[n_rows - 1, :dim], rng, position)
-        draw_velocity(problem.system.max_speed, rng, velocity)
+        draw_in_ball(problem.system.max_speed, rng, velocity)
         n_rows, tried, reached = drive(
             problem, driving, steps, n_rows, n_rows - 1, position, velocity
         )

@@ -6,17 +6,19 @@ clock owned, a cancellation heard and the end told in words.
 """
 
 from dataclasses import dataclass
-import itertools
 import math
 import time
 from typing import Any
 
-from hnr_planner.core.checks import check_number, check_seed, Floats
+from hnr_planner.core.checks import check_number, Floats
 from hnr_planner.core.errors import RequestError
-from hnr_planner.core.planning.attempts import SEARCH, SHORTEN
+from hnr_planner.core.planning.attempts import SEARCH, search_until_free, SHORTEN
 from hnr_planner.core.planning.kinodynamic.algorithms import make_kinodynamic_planner
 from hnr_planner.core.planning.kinodynamic.connect import compile_connect, KinodynamicConnect
-from hnr_planner.core.planning.kinodynamic.inevitable import is_collision_inevitable
+from hnr_planner.core.planning.kinodynamic.inevitable import (
+    compile_inevitable,
+    is_collision_inevitable,
+)
 from hnr_planner.core.planning.kinodynamic.problem import (
     is_at_goal,
     KinodynamicPlanner,
@@ -30,11 +32,12 @@ from hnr_planner.core.planning.limits import Limits
 from hnr_planner.core.planning.request import check_request, Request, without_search
 from hnr_planner.core.planning.result import FirstSolution, PlannerStatus, PlanResult
 from hnr_planner.core.spaces.curves import knows_curves
+from hnr_planner.core.spaces.primitives import kind_of
 from hnr_planner.core.spaces.space import Space
 from hnr_planner.core.streams import stream
 from hnr_planner.core.systems.double_integrator import DoubleIntegrator
 from hnr_planner.core.systems.primitives import first_blocked_step
-from hnr_planner.core.systems.system import System
+from hnr_planner.core.systems.system import System, vectors_to_kernel
 from hnr_planner.core.systems.trajectory import Trajectory
 import numpy as np
 from numpy.typing import ArrayLike
@@ -100,7 +103,7 @@ def check_kinodynamic_request(
     planner = make_kinodynamic_planner(algorithm, settings, system)
     speed = check_number('goal_speed', goal_speed, 0.0)
     place = check_request(
-        space, state[: system.dim], goal, goal_radius, 'auto', {}, simplify, check_seed(seed)
+        space, state[: system.dim], goal, goal_radius, 'auto', {}, simplify, seed
     )
     for name, value in (('goal_radius', place.goal_radius), ('goal_speed', speed)):
         if planner.samples_goal and value == 0.0:
@@ -129,17 +132,18 @@ def plan_motion(
     known = _without_search(request)
     if known is not None:
         return _answer(request, *known, limits, began)
-    search, status, trajectory = _search(request, limits)
-    if trajectory is None:
+    status, search, found = _search(request, limits)
+    if found is None:
         spent = f'{search.iterations} transitions, {time.perf_counter() - began:.3g} s'
         return _answer(request, status, f'{status.value} ({spent})', None, limits, began, search)
+    motion, trajectory = found
     first = FirstSolution(time.perf_counter() - began, trajectory.length)
     if isinstance(request.system, DoubleIntegrator) and request.place.simplify:
         until = began + (improve_seconds or math.inf)
         rounds = improve_rounds if improve_rounds or not improve_seconds else math.inf
         improving = Limits(min(limits.deadline, until), cancel=cancel)
         proposals = PROPOSALS + PROPOSALS_AGAIN * rounds
-        trajectory = _shortened(request, search.motion, trajectory, proposals, improving)
+        trajectory = _shortened(request, motion, trajectory, proposals, improving)
         limits.cut = limits.cut or improving.cut
     message = (
         f'trajectory of {trajectory.duration:.6g} s with {len(trajectory.controls)} steps after '
@@ -175,34 +179,30 @@ def _cannot_stop(request: KinodynamicRequest) -> bool:
     problem = request.problem
     if can_brake(problem, problem.start, request.system.control_dim):
         return False
-    step, place = 1e-3, problem.place
-    velocity = request.system.velocity(request.start)
-    ahead = request.place.space.to_kernel(request.start[: request.system.dim] + step * velocity)
+    place, velocity = problem.place, request.system.velocity(request.start)
     return is_collision_inevitable(
         place.space,
         (place.lower, place.upper),
         place.start,
-        (ahead - place.start) / step,
+        vectors_to_kernel(request.place.space, velocity),
         request.system.largest_acceleration / place.scale,
     )
 
 
 def _search(
     request: KinodynamicRequest, limits: Limits
-) -> tuple[KinodynamicSearch, PlannerStatus, Trajectory | None]:
+) -> tuple[PlannerStatus, KinodynamicSearch, tuple[Motion, Trajectory] | None]:
     """Search for a motion that is free in the caller's coordinates too, as ``plan`` does."""
-    for salt in itertools.count():
-        rng = request.place.stream(0, SEARCH, salt)
-        search = request.planner.start(request.problem, rng)
-        status = limits.run(search)
-        if status is PlannerStatus.SOLVED:
-            trajectory = _in_caller_s_frame(request, search.motion)
-            if is_free(request, trajectory):
-                return search, status, trajectory
-            status = limits.stop() or status
-        if status is not PlannerStatus.SOLVED:
-            break
-    return search, status, None
+
+    def start(salt: int) -> KinodynamicSearch:
+        return request.planner.start(request.problem, request.place.stream(0, SEARCH, salt))
+
+    def free_motion(search: KinodynamicSearch) -> tuple[Motion, Trajectory] | None:
+        motion = search.motion
+        trajectory = _in_caller_s_frame(request, motion)
+        return (motion, trajectory) if is_free(request, trajectory) else None
+
+    return search_until_free(start, free_motion, limits)
 
 
 def _shortened(
@@ -285,26 +285,29 @@ def _answer(
     )
 
 
-_compiled: set[tuple[type, type, type]] = set()
+_compiled: set[tuple[Any, ...]] = set()
 
 
 def _compile(request: KinodynamicRequest) -> None:
     """Compile, once for each kind of space, planner and system, before any clock runs."""
-    kinds = type(request.problem.place.space), type(request.planner), type(request.problem.system)
+    system, place = request.system, request.problem.place
+    kinds = kind_of(place.space), type(request.planner), type(request.problem.system)
     if kinds in _compiled:
         return
-    problem, system = request.problem, request.system
+    # Nobody has looked at start and goal yet, which may lie anywhere: the bounds stand for them.
+    rest = np.append(place.lower, np.zeros(system.state_dim - system.dim))
+    bounded = place._replace(start=place.lower, goal=place.upper)
+    problem = request.problem._replace(place=bounded, start=rest)
     without_search(request.place)
-    is_at_goal(problem, problem.start)
-    can_brake(problem, problem.start, system.control_dim)
-    _cannot_stop(request)
+    is_at_goal(problem, rest)
+    can_brake(problem, rest, system.control_dim)
+    compile_inevitable(place.space)
     search = request.planner.start(problem, stream(0))
     for _ in range(2):
         search.advance(0)
     if isinstance(request.planner, KinodynamicConnect):
         compile_connect(problem)
-    rest = np.tile(problem.start, (2, 1))
-    motion = Motion(np.zeros(1), rest, np.zeros((1, system.control_dim)))
+    motion = Motion(np.zeros(1), np.stack([rest, rest]), np.zeros((1, system.control_dim)))
     if isinstance(request.system, DoubleIntegrator):
         shorten_in_time(problem, motion, stream(0), 0)
     is_free(request, _in_caller_s_frame(request, motion))

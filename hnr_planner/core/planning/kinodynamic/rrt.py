@@ -13,7 +13,6 @@ from hnr_planner.core.checks import Floats
 from hnr_planner.core.kernels import kernel
 from hnr_planner.core.planning.kinodynamic.problem import KinodynamicProblem
 from hnr_planner.core.planning.kinodynamic.steps import (
-    draw_velocity,
     drive,
     DrivenPlanner,
     DrivenSearch,
@@ -21,6 +20,7 @@ from hnr_planner.core.planning.kinodynamic.steps import (
 from hnr_planner.core.planning.nearest import BoxTree, empty_box_tree, grown, insert, nearest
 from hnr_planner.core.planning.rrt import draw_in_box, PROPOSALS_PER_ITERATION
 from hnr_planner.core.planning.search import with_room
+from hnr_planner.core.sampling.walks import draw_in_ball
 from hnr_planner.core.spaces.primitives import contains
 from hnr_planner.core.streams import Stream
 from hnr_planner.core.systems.primitives import velocity
@@ -108,7 +108,7 @@ def _grow(problem, driving, rng, steps, points, tree, n_rows, n_iterations):
             rejected += 1
             continue
         iterations += 1
-        draw_velocity(problem.system.max_speed, rng, wanted)
+        draw_in_ball(problem.system.max_speed, rng, wanted)
         for i in range(dim):
             target[dim + i] = driving.velocity_weight * wanted[i]
         parent, before = nearest(tree, points, target), n_rows

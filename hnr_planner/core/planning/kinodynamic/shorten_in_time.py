@@ -12,8 +12,7 @@ from hnr_planner.core.borrowed import borrowed
 from hnr_planner.core.kernels import kernel
 from hnr_planner.core.planning.kinodynamic.connection import connect, empty_connection
 from hnr_planner.core.planning.kinodynamic.problem import is_at_goal, KinodynamicProblem, Motion
-from hnr_planner.core.planning.kinodynamic.steps import draw_velocity
-from hnr_planner.core.sampling.walks import draw_direction
+from hnr_planner.core.sampling.walks import draw_in_ball
 from hnr_planner.core.streams import normal, Stream, uniform
 from hnr_planner.core.systems.primitives import contact, move
 import numpy as np
@@ -119,14 +118,12 @@ def _draw_end(problem, rng, last, end):
     end[:] = last
     offset = np.empty(dim)
     if place.goal_radius > 0.0:
-        draw_direction(rng, offset)
-        radius = place.goal_radius * uniform(rng) ** (1.0 / dim)
+        draw_in_ball(place.goal_radius, rng, offset)
         for i in range(dim):
-            drawn = place.goal[i] + radius * offset[i]
-            end[i] += part * (drawn - end[i])
+            end[i] += part * (place.goal[i] + offset[i] - end[i])
     fastest = min(problem.goal_speed, problem.system.max_speed)
     if fastest > 0.0:
-        draw_velocity(fastest, rng, offset)
+        draw_in_ball(fastest, rng, offset)
         for i in range(dim):
             end[dim + i] += part * (offset[i] - end[dim + i])
     if not is_at_goal(problem, end):

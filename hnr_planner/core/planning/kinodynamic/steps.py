@@ -27,12 +27,11 @@ from hnr_planner.core.planning.kinodynamic.problem import (
     speed_of,
 )
 from hnr_planner.core.planning.search import with_room
-from hnr_planner.core.sampling.walks import draw_direction
 from hnr_planner.core.spaces.primitives import contains_around
-from hnr_planner.core.streams import Stream, uniform
+from hnr_planner.core.streams import Stream
 from hnr_planner.core.systems.limits import check_limit
 from hnr_planner.core.systems.primitives import brake, contact, halt, move, steer, velocity
-from hnr_planner.core.trees import NONE
+from hnr_planner.core.trees import NONE, rows_to
 import numpy as np
 from numpy.typing import NDArray
 
@@ -144,7 +143,6 @@ class DrivenSearch:
     iterations: int = field(init=False, default=0)
     solved: bool = field(init=False, default=False)
     n_steps: int = field(init=False, default=0)
-    taut: ClassVar[bool] = False
     _n_rows: int = field(init=False, default=1)
     _steps: Steps = field(init=False)
 
@@ -170,12 +168,7 @@ class DrivenSearch:
     @property
     def motion(self) -> Motion:
         """The steps that lead to the newest state."""
-        return Motion(*motion_to(self._steps, self._n_rows - 1))
-
-    @property
-    def path(self) -> Floats:
-        """Positions (m, dim) along the motion."""
-        return self.motion.states[:, : len(self.problem.place.goal)]
+        return motion_to(self._steps, self._n_rows - 1)
 
     def _make_room(self, n_iterations: int) -> None:
         rows = self._n_rows + n_iterations * (1 if self.driving.one_step else STEPS_MAX)
@@ -189,29 +182,10 @@ def first_step(start: Floats, control_dim: int) -> Steps:
     )
 
 
-@kernel
-def motion_to(steps, row):
-    """Return the durations, states and controls of the steps from the start to ``row``."""
-    n, k = 0, row
-    while steps.parents[k] != NONE:
-        n, k = n + 1, steps.parents[k]
-    durations, states = np.empty(n), np.empty((n + 1, steps.states.shape[1]))
-    controls = np.empty((n, steps.controls.shape[1]))
-    for i in range(n, 0, -1):
-        states[i] = steps.states[row]
-        durations[i - 1], controls[i - 1] = steps.durations[row], steps.controls[row]
-        row = steps.parents[row]
-    states[0] = steps.states[0]
-    return durations, states, controls
-
-
-@kernel
-def draw_velocity(max_speed, rng, v):
-    """Draw ``v`` uniformly from the ball of velocities."""
-    draw_direction(rng, v)
-    length = max_speed * uniform(rng) ** (1.0 / len(v))
-    for i in range(len(v)):
-        v[i] *= length
+def motion_to(steps: Steps, row: int) -> Motion:
+    """Return the motion of the steps from the start to ``row``."""
+    rows = rows_to(steps.parents, row)
+    return Motion(steps.durations[rows[1:]], steps.states[rows], steps.controls[rows[1:]])
 
 
 @kernel

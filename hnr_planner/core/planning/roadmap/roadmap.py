@@ -20,7 +20,7 @@ from hnr_planner.core.planning.hit_and_run_connect import HitAndRunConnect
 from hnr_planner.core.planning.roadmap.exits import nodes_seen, way_to_node
 from hnr_planner.core.planning.roadmap.knowledge import Knowledge, nothing_known
 from hnr_planner.core.planning.roadmap.learning import learn, N_DRAWS
-from hnr_planner.core.planning.search import compile_search, make_problem, Problem, Search
+from hnr_planner.core.planning.search import compile_search, make_problem, PathSearch, Problem
 from hnr_planner.core.spaces.primitives import sees
 from hnr_planner.core.spaces.space import Space
 from hnr_planner.core.streams import Stream, stream
@@ -116,7 +116,7 @@ class Roadmap:
         """Nodes (n, dim): corners of the space, in the caller's frame."""
         return self.space.from_kernel(self._known.nodes)
 
-    def start(self, problem: Problem, rng: Stream) -> Search:
+    def start(self, problem: Problem, rng: Stream) -> PathSearch:
         """
         Answer a request, or start trees where the roadmap does not lead from start to goal.
 
