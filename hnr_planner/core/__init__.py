@@ -9,7 +9,10 @@ The algorithms, free of ROS: spaces, walks on them, and planners.
 from hnr_planner.core.errors import Cancelled, HnrError, RequestError, SpaceError, StuckError
 from hnr_planner.core.planning.algorithms import ALGORITHMS
 from hnr_planner.core.planning.hit_and_run import HitAndRun
-from hnr_planner.core.planning.kinodynamic.algorithms import KINODYNAMIC_ALGORITHMS
+from hnr_planner.core.planning.kinodynamic.algorithms import (
+    KINODYNAMIC_ALGORITHMS,
+    KINODYNAMIC_PLANNERS,
+)
 from hnr_planner.core.planning.plan import plan
 from hnr_planner.core.planning.result import FirstSolution, PlannerStatus, PlanResult
 from hnr_planner.core.planning.roadmap.roadmap import Roadmap
@@ -52,6 +55,7 @@ from hnr_planner.core.warm_up import warm_up
 __all__ = [
     'ALGORITHMS',
     'KINODYNAMIC_ALGORITHMS',
+    'KINODYNAMIC_PLANNERS',
     'RRT',
     'WALKS',
     'BallSpace',

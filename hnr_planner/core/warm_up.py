@@ -1,7 +1,7 @@
 """Compiling everything before anyone waits for it."""
 
 from hnr_planner.core.planning.algorithms import ALGORITHMS
-from hnr_planner.core.planning.kinodynamic.algorithms import KINODYNAMIC_ALGORITHMS
+from hnr_planner.core.planning.kinodynamic.algorithms import KINODYNAMIC_PLANNERS
 from hnr_planner.core.planning.plan import plan
 from hnr_planner.core.sampling.sample import sample
 from hnr_planner.core.sampling.steps import WALKS
@@ -17,7 +17,7 @@ def warm_up() -> None:
     for algorithm in ALGORITHMS:
         plan(space, start, goal, algorithm=algorithm, seed=0, optimize_iterations=1)
     plan(space, start, goal, seed=0, alternatives=2, clearance=1.0)
-    for algorithm in KINODYNAMIC_ALGORITHMS:
+    for algorithm in KINODYNAMIC_PLANNERS:
         state, system = (*start, 0.0, 0.0), DoubleIntegrator()
         plan(space, state, goal, system=system, algorithm=algorithm, goal_radius=1.0, seed=0)
     for walk in WALKS:

@@ -13,7 +13,7 @@ import time
 
 from hnr_planner.core import (
     HnrError,
-    KINODYNAMIC_ALGORITHMS,
+    KINODYNAMIC_PLANNERS,
     plan,
     PlannerStatus,
     PlanResult,
@@ -156,7 +156,7 @@ class _Job:
         start = request.start.point
         result, why = self._plan_from(start, request, snapshot)
         escape, radius = 0.0, self.settings.escape_radius
-        escapes = radius > 0.0 and request.algorithm not in KINODYNAMIC_ALGORITHMS[1:]
+        escapes = radius > 0.0 and request.algorithm not in KINODYNAMIC_PLANNERS
         if result.status is PlannerStatus.INVALID_START and escapes:
             outside = way_out(snapshot, start, request.goal.point, radius)
             if outside is None:
@@ -181,7 +181,8 @@ class _Job:
         goal = request.goal.point
         arguments = self.settings.plan_arguments | {'algorithm': request.algorithm}
         begin = np.array(start)
-        if request.algorithm in KINODYNAMIC_ALGORITHMS[1:]:
+        kinodynamic = KINODYNAMIC_PLANNERS.get(request.algorithm)
+        if kinodynamic is not None:
             arguments |= self.settings.motion_arguments(request.algorithm)
             begin = np.append(begin, (0.0, 0.0))  # at rest
 
@@ -207,7 +208,7 @@ class _Job:
         if nearest is None:
             return result, f'{why}; nothing within {request.tolerance:g} m of it can be reached'
         # The end has been moved already: a region around it would move it once more.
-        if 'boundary' not in arguments:
+        if kinodynamic is None or not kinodynamic.samples_goal:
             arguments['goal_radius'] = 0.0
         result = search(nearest)
         offset = math.dist(nearest, goal)

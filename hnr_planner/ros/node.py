@@ -2,7 +2,7 @@
 
 from functools import partial
 
-from hnr_planner.core import KINODYNAMIC_ALGORITHMS
+from hnr_planner.core import KINODYNAMIC_PLANNERS
 from hnr_planner.ros.answer import only_same_frame
 from hnr_planner.ros.bond import NodeBond
 from hnr_planner.ros.callback_group import BoundedCallbackGroup
@@ -33,7 +33,7 @@ SERVICES = {
     'plan': None,
     'plan_hit_and_run': 'hit_and_run',
     'plan_rrt': 'rrt',
-    **{f'plan_{name}': name for name in KINODYNAMIC_ALGORITHMS if name != 'auto'},
+    **{f'plan_{name}': name for name in KINODYNAMIC_PLANNERS},
 }
 """Services that plan, and the algorithm of each; None is the one of the parameter."""
 

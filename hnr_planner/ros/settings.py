@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import math
 from typing import Any
 
-from hnr_planner.core import ALGORITHMS, BallWalk, HnrError, WALKS
+from hnr_planner.core import ALGORITHMS, BallWalk, HnrError, KINODYNAMIC_PLANNERS, WALKS
 from hnr_planner.core.systems import DoubleIntegrator
 
 LARGEST_INT = 2**31 - 1
@@ -229,13 +229,13 @@ class Settings:
         system = DoubleIntegrator(
             dim=2, max_acceleration=self.max_acceleration, max_speed=self.max_speed
         )
-        stops = algorithm == 'kinodynamic_connect'
-        unbounded = self.goal_speed < 0.0 or (self.goal_speed == 0.0 and not stops)
+        samples_goal = KINODYNAMIC_PLANNERS[algorithm].samples_goal
+        unbounded = self.goal_speed < 0.0 or (self.goal_speed == 0.0 and samples_goal)
         arguments = {
             'system': system,
             'goal_speed': math.inf if unbounded else self.goal_speed,
         }
-        return arguments if stops else {**arguments, 'boundary': self.boundary}
+        return {**arguments, 'boundary': self.boundary} if samples_goal else arguments
 
     @property
     def plan_arguments(self) -> dict[str, Any]:

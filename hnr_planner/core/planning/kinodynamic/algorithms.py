@@ -12,10 +12,12 @@ from hnr_planner.core.systems.double_integrator import DoubleIntegrator
 from hnr_planner.core.systems.system import System
 
 _KINDS = (KinodynamicConnect, KinodynamicHitAndRun, KinodynamicRRT)
-_PLANNERS: dict[str, type[Any]] = {kind.name: kind for kind in _KINDS}
+
+#: Planners for systems, by name.
+KINODYNAMIC_PLANNERS: dict[str, type[Any]] = {kind.name: kind for kind in _KINDS}
 
 #: Names that ``plan`` takes beside a system.
-KINODYNAMIC_ALGORITHMS = ('auto', *_PLANNERS)
+KINODYNAMIC_ALGORITHMS = ('auto', *KINODYNAMIC_PLANNERS)
 
 
 def make_kinodynamic_planner(
@@ -32,7 +34,7 @@ def make_kinodynamic_planner(
     """
     connects = isinstance(system, DoubleIntegrator)
     best = KinodynamicConnect if connects else KinodynamicRRT
-    planner: Any = make_planner(algorithm, settings, {'auto': best, **_PLANNERS})
+    planner: Any = make_planner(algorithm, settings, {'auto': best, **KINODYNAMIC_PLANNERS})
     if not hasattr(planner, 'boundary'):
         raise RequestError(f'{planner.name} plans without a system; one of {_names()} has to')
     if isinstance(planner, KinodynamicConnect) and not connects:
