@@ -174,8 +174,8 @@ def keep_map_files(map_file: str | Path, *outputs: Path | None) -> None:
                 raise BadInputError(f'{output} belongs to the map {map_file}: choose another name')
 
 
-def compile_kernels() -> None:
-    """Have every kernel ready before anything is timed; say so when that takes long."""
+def compile_kernels(use: str) -> None:
+    """Have the kernels for a use ready before anything is timed; say so when that takes long."""
     from hnr_planner.core import warm_up
 
     note = 'compiling, once after each installation: a minute or two ...'
@@ -183,6 +183,6 @@ def compile_kernels() -> None:
     timer.daemon = True
     timer.start()
     try:
-        warm_up()
+        warm_up(use)
     finally:
         timer.cancel()

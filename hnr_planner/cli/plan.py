@@ -135,7 +135,7 @@ def run(arguments: argparse.Namespace) -> int:
 
     occupancy, space = open_map(arguments)
     keep_map_files(arguments.map, arguments.plot, arguments.html)
-    compile_kernels()
+    compile_kernels('paths')
     result = plan(
         space,
         arguments.start,

@@ -119,7 +119,7 @@ def run(arguments: argparse.Namespace) -> int:
     occupancy, space = open_map(arguments)
     keep_map_files(arguments.map, arguments.csv, arguments.plot)
     seed = secrets.randbelow(2**31) if arguments.seed is None else arguments.seed
-    compile_kernels()
+    compile_kernels('samples')
     chains = _draw(arguments, space, seed)
     if arguments.diagnose:
         print(diagnose(chains).message, file=sys.stderr)

@@ -29,7 +29,7 @@ from hnr_planner.core.sampling.diagnostics import (
 )
 from hnr_planner.core.sampling.free_space import FreeSpaceDraws, sample_free_space
 from hnr_planner.core.sampling.sample import sample
-from hnr_planner.core.sampling.steps import (
+from hnr_planner.core.sampling.walks import (
     BallWalk,
     CoordinateHitAndRunWalk,
     HitAndRunWalk,

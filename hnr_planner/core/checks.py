@@ -12,12 +12,17 @@ from numpy.typing import ArrayLike, NDArray
 Floats = NDArray[np.float64]
 
 
+def check_numbers(name: str, values: ArrayLike, error: type[HnrError] = RequestError) -> Floats:
+    """Return ``values`` of any shape as a fresh float array, or raise ``error``."""
+    try:
+        return np.array(values, dtype=np.float64, order='C')
+    except (TypeError, ValueError, OverflowError):
+        raise error(f'{name} must be numbers, got {values!r}') from None
+
+
 def check_points(name: str, points: ArrayLike, dim: int) -> Floats:
     """Return ``points`` (k, dim) or (dim,) as a fresh float array, or raise RequestError."""
-    try:
-        array = np.array(points, dtype=np.float64)
-    except (TypeError, ValueError, OverflowError):
-        raise RequestError(f'{name} must be numbers, got {points!r}') from None
+    array = check_numbers(name, points)
     if array.ndim not in (1, 2) or array.shape[-1] != dim:
         raise RequestError(f'{name} must have shape (k, {dim}) or ({dim},), got {array.shape}')
     return array
@@ -35,10 +40,7 @@ def check_point(name: str, point: ArrayLike, dim: int) -> Floats:
 
 def check_vector(name: str, vector: ArrayLike, error: type[HnrError] = RequestError) -> Floats:
     """Return ``vector`` (dim,) of any dimension as fresh finite floats, or raise ``error``."""
-    try:
-        array = np.array(vector, dtype=np.float64)
-    except (TypeError, ValueError, OverflowError):
-        raise error(f'{name} must be numbers, got {vector!r}') from None
+    array = check_numbers(name, vector, error)
     if array.ndim != 1 or array.size == 0:
         raise error(f'{name} must have shape (dim,) with dim at least 1, got {array.shape}')
     if not np.isfinite(array).all():

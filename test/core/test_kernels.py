@@ -12,7 +12,7 @@ from hnr_planner.core.kernels import interpreted
 from hnr_planner.core.planning import class_graph, nearest, rrt, shortcuts, stand_off
 from hnr_planner.core.planning import hit_and_run_connect as connect
 from hnr_planner.core.planning.hit_and_run import _walk
-from hnr_planner.core.planning.homology import islands_at
+from hnr_planner.core.planning.homology import islands_at, NO_ISLANDS
 from hnr_planner.core.planning.search import Problem
 from hnr_planner.core.spaces.primitives import chord
 from hnr_planner.core.streams import stream
@@ -156,7 +156,7 @@ def test_hit_and_run_connect():
 
 
 @pytest.mark.filterwarnings('ignore:overflow')  # signatures are sums modulo 2^64
-@pytest.mark.parametrize('islands', [None, islands_at(GRID.island_points)])
+@pytest.mark.parametrize('islands', [NO_ISLANDS, islands_at(GRID.island_points)])
 def test_simplify(islands):
     chain = zigzag()
     kept = np.zeros(60, dtype=np.int64)

@@ -25,14 +25,14 @@ from hnr_planner.core.planning.class_graph import (
     START,
 )
 from hnr_planner.core.planning.hit_and_run_connect import HitAndRunConnect
-from hnr_planner.core.planning.homology import islands_at, signature
+from hnr_planner.core.planning.homology import islands_at, NO_ISLANDS, signature
 from hnr_planner.core.planning.limits import Limits
 from hnr_planner.core.planning.request import Request
 from hnr_planner.core.planning.result import PlannerStatus, PlanResult
 from hnr_planner.core.planning.rrt import draw_in_box
 from hnr_planner.core.planning.search import compile_search
-from hnr_planner.core.planning.simplify import compile_shorten, shorten, skip_vertices
-from hnr_planner.core.planning.stand_off import compile_stand_off, stand_off
+from hnr_planner.core.planning.simplify import shorten, skip_vertices
+from hnr_planner.core.planning.stand_off import stand_off
 from hnr_planner.core.spaces.primitives import component
 from hnr_planner.core.spaces.space import Space
 import numpy as np
@@ -170,14 +170,10 @@ def _draw_points(problem, rng, points):
 
 def compile_alternatives(request: Request) -> None:
     """Compile what ``with_alternatives`` runs on this kind of space."""
-    space, islands = request.space, islands_at(np.empty((0, 2)))
     ends = np.stack([request.problem.start, request.problem.start])
     graph = _linked(request, [ends], ends[:0], Limits(math.inf))
-    shortest_classes(graph, islands, 1)
-    compile_shorten(space, ends, islands)
-    if request.clearance > 0.0:
-        compile_stand_off(space, ends, request.clearance, islands)
-    signature(islands, ends)
+    shortest_classes(graph, NO_ISLANDS, 1)
+    signature(NO_ISLANDS, ends)
     is_simple(ends)
     _draw_points(request.problem, request.stream(0), ends[:0])
     compile_search(HitAndRunConnect(), request.problem)

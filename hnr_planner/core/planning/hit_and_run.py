@@ -12,7 +12,7 @@ from hnr_planner.core.borrowed import borrowed
 from hnr_planner.core.checks import Floats
 from hnr_planner.core.kernels import kernel
 from hnr_planner.core.planning.search import Problem, reaches_goal, to_goal, with_room
-from hnr_planner.core.sampling.walks import hit_and_run_step
+from hnr_planner.core.sampling.draws import hit_and_run_step
 from hnr_planner.core.streams import Stream
 import numpy as np
 from numpy.typing import NDArray

@@ -22,7 +22,7 @@ from hnr_planner.core.planning.frontier import (
 )
 from hnr_planner.core.planning.search import Problem, reaches_goal, with_room
 from hnr_planner.core.planning.two_trees import TwoTreeSearch
-from hnr_planner.core.sampling.walks import draw_between, draw_direction
+from hnr_planner.core.sampling.draws import draw_between, draw_direction
 from hnr_planner.core.spaces.primitives import component, leave, sees
 from hnr_planner.core.streams import Stream, uniform
 from hnr_planner.core.trees import NONE

@@ -10,7 +10,7 @@ neither can be deformed into the other.
 
 Numbers are random words, added modulo 2^64, so that one word stands for the windings around all
 islands: two classes have the same one with a chance of 2^-64. In the kernel frame, two dimensions.
-Kernels take None for islands where a path may pass everything on any side; that costs nothing.
+Without islands every path has the signature 0, and may pass everything on any side.
 """
 
 from typing import NamedTuple
@@ -46,13 +46,15 @@ def islands_at(points: Floats) -> Islands:
     return Islands(x.copy(), y.copy(), words)
 
 
+#: For paths that may pass everything on any side.
+NO_ISLANDS = islands_at(np.empty((0, 2)))
+
+
 @kernel
 def crossings(islands, a, b):
     """Signature of the segment a-b."""
-    if islands is None:
-        return np.int64(0)
     signature = np.int64(0)
-    if a[0] == b[0]:
+    if len(islands.x) == 0 or a[0] == b[0]:
         return signature
     # A ray belongs to what is right of it, so a vertex on a ray is on one side of it only.
     first = np.searchsorted(islands.x, min(a[0], b[0]), side='right')
@@ -67,9 +69,9 @@ def crossings(islands, a, b):
 @kernel
 def signature(islands, path):
     """Signature of a path (m, 2)."""
-    if islands is None:
-        return np.int64(0)
     total = np.int64(0)
+    if len(islands.x) == 0:
+        return total
     for k in range(1, len(path)):
         total += crossings(islands, path[k - 1], path[k])
     return total
@@ -78,6 +80,4 @@ def signature(islands, path):
 @kernel
 def loop_signature(islands, a, x, b):
     """Signature of the loop a-x-b-a: 0 when the triangle holds no island's point."""
-    if islands is None:
-        return np.int64(0)
     return crossings(islands, a, x) + crossings(islands, x, b) + crossings(islands, b, a)

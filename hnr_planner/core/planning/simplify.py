@@ -11,7 +11,7 @@ import time
 from hnr_planner.core.checks import check_count, check_number, check_points, check_seed, Floats
 from hnr_planner.core.errors import RequestError
 from hnr_planner.core.lengths import path_length
-from hnr_planner.core.planning.homology import Islands
+from hnr_planner.core.planning.homology import Islands, NO_ISLANDS
 from hnr_planner.core.planning.limits import Limits
 from hnr_planner.core.planning.shortcuts import join, pull, skip
 from hnr_planner.core.spaces.space import Space
@@ -97,7 +97,7 @@ def shorten(
     rng: Stream,
     limits: Limits,
     tests_max: int = TESTS_MAX,
-    islands: Islands | None = None,
+    islands: Islands = NO_ISLANDS,
 ) -> Floats:
     """
     Shorten a free path (m, dim) of the caller's frame within limits; the same ends.
@@ -122,7 +122,7 @@ def _tighten(
     space: Space,
     points: Floats,
     rng: Stream,
-    islands: Islands | None,
+    islands: Islands,
     limits: Limits,
     tests_max: int,
 ) -> tuple[Floats, int]:
@@ -145,7 +145,7 @@ def skip_vertices(
     points: Floats,
     limits: Limits,
     tests_max: int = TESTS_MAX,
-    islands: Islands | None = None,
+    islands: Islands = NO_ISLANDS,
 ) -> tuple[Floats, int]:
     """Keep only vertices that follow each other as the last one seen: (path, tests)."""
     tests, before = 0, math.inf
@@ -161,7 +161,7 @@ def _pass_over(
     space: Space,
     points: Floats,
     every: bool,
-    islands: Islands | None,
+    islands: Islands,
     limits: Limits,
     tests_max: int,
 ) -> tuple[Floats, int]:
@@ -177,9 +177,9 @@ def _pass_over(
     return points[np.concatenate([kept[:n_kept], rest])], tests
 
 
-def compile_shorten(space: Space, points: Floats, islands: Islands | None = None) -> None:
+def compile_shorten(space: Space, points: Floats) -> None:
     """Compile what ``shorten`` runs on this kind of space, without doing anything."""
-    skip(space.data, islands, points, np.zeros(1, dtype=np.int64), 1, True, 0)
-    join(space.data, islands, points, stream(0), 0)
-    pull(space.data, islands, points, 1, space.margin, 0)
+    skip(space.data, NO_ISLANDS, points, np.zeros(1, dtype=np.int64), 1, True, 0)
+    join(space.data, NO_ISLANDS, points, stream(0), 0)
+    pull(space.data, NO_ISLANDS, points, 1, space.margin, 0)
     path_length(points)

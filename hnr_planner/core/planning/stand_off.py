@@ -17,6 +17,7 @@ from hnr_planner.core.planning.homology import (
     crossings,
     Islands,
     loop_signature,
+    NO_ISLANDS,
 )
 from hnr_planner.core.planning.limits import Limits
 from hnr_planner.core.spaces.clearance import clearance_within, FARTHEST_WALL
@@ -68,7 +69,7 @@ def wish_for(space: Space, clearance: float) -> Wish:
 
 
 def stand_off(
-    space: Space, path: Floats, clearance: float, limits: Limits, islands: Islands | None = None
+    space: Space, path: Floats, clearance: float, limits: Limits, islands: Islands = NO_ISLANDS
 ) -> Floats:
     """
     Move a free path (m, dim) of the caller's frame away from walls, within limits; the same ends.
@@ -89,9 +90,7 @@ def stand_off(
     return moved if is_better and space.is_path_free(moved) else path
 
 
-def _move_all(
-    space: Space, islands: Islands | None, wish: Wish, points: Floats, limits: Limits
-) -> None:
+def _move_all(space: Space, islands: Islands, wish: Wish, points: Floats, limits: Limits) -> None:
     """Move the vertices, in passes, until no step is left that is worth it."""
     steps, costs = np.full(len(points), wish.coarsest), segment_costs(wish, points)
     for _ in range(PASSES):
@@ -229,12 +228,10 @@ def drop(space, islands, wish, points):
     return kept[:n_kept]
 
 
-def compile_stand_off(
-    space: Space, ends: Floats, clearance: float, islands: Islands | None = None
-) -> None:
+def compile_stand_off(space: Space, ends: Floats, clearance: float) -> None:
     """Compile what ``stand_off`` runs on this kind of space."""
     wish = wish_for(space, clearance)
     points = spread(wish, ends)
     costs = segment_costs(wish, points)
-    move(space.data, islands, wish, points, costs, np.zeros(len(points)))
-    drop(space.data, islands, wish, points)
+    move(space.data, NO_ISLANDS, wish, points, costs, np.zeros(len(points)))
+    drop(space.data, NO_ISLANDS, wish, points)

@@ -18,7 +18,7 @@ from hnr_planner.core.borrowed import borrowed
 from hnr_planner.core.checks import check_count, check_points, check_seed, Floats
 from hnr_planner.core.errors import RequestError, StuckError
 from hnr_planner.core.kernels import kernel
-from hnr_planner.core.sampling.steps import (
+from hnr_planner.core.sampling.walks import (
     make_walk,
     MOVES,
     N_COUNTS,

@@ -2,7 +2,7 @@
 
 from hnr_planner.core.checks import check_count, Floats
 from hnr_planner.core.sampling.chains import begin_chains, walk_on
-from hnr_planner.core.sampling.steps import Walk
+from hnr_planner.core.sampling.walks import Walk
 from hnr_planner.core.spaces.space import Space
 from numpy.typing import ArrayLike
 

@@ -2,7 +2,7 @@
 
 import math
 
-from hnr_planner.core.checks import check_point, check_vector, Floats
+from hnr_planner.core.checks import check_numbers, check_point, check_vector, Floats
 from hnr_planner.core.errors import SpaceError
 from hnr_planner.core.kernels import kernel
 from hnr_planner.core.spaces.bounds import check_bounds
@@ -77,10 +77,7 @@ class PolytopeSpace(Space):
 def _check_inequalities(a: ArrayLike, b: ArrayLike) -> tuple[Floats, Floats]:
     """Return rows of unit length and their right-hand sides, or raise SpaceError."""
     offsets = check_vector('b', b, SpaceError)
-    try:
-        rows = np.array(a, dtype=np.float64, order='C')
-    except (TypeError, ValueError, OverflowError):
-        raise SpaceError(f'a must be numbers, got {a!r}') from None
+    rows = check_numbers('a', a, SpaceError)
     if rows.ndim != 2 or len(rows) != len(offsets) or rows.shape[1] == 0:
         raise SpaceError(f'a must have shape ({len(offsets)}, dim) as b has, got {rows.shape}')
     if not np.isfinite(rows).all():

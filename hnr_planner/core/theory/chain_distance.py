@@ -80,12 +80,15 @@ def chain_distance(
     if n_links != math.inf:
         check_count('n_links', n_links, 1)
     u, v = check_point('u', u, 2), check_point('v', v, 2)
-    nodes = np.concatenate([[u, v], corners(space).turns, _scattered(space, seed)])
+    turns = corners(space).turns
+    nodes = np.concatenate([[u, v], turns, _scattered(space, seed)])
+    ratios, n_first = _pairwise(space, nodes), 2 + len(turns)
     hull = hull_of(space)
     in_hull = float(hilbert_distance(cross_ratio_distance(hull, u, v))[0])
-    by_length = 4.0 * _shortest_length(space, u, v) / _diameter(hull)
+    shortest = _shortest_length(nodes[:n_first], ratios[:n_first, :n_first])
+    by_length = 4.0 * shortest / _diameter(hull)
     lower = _total(max(in_hull, by_length), n_links)
-    chain = _best_chain(space, nodes, n_links)
+    chain = _best_chain(nodes, ratios, n_links)
     if chain is None:
         return Bounds(lower, math.inf)
     upper = _improved(space, chain, n_links)
@@ -136,22 +139,20 @@ def _pairwise(space: Space, nodes: Floats) -> Floats:
     return ratios + ratios.T
 
 
-def _shortest_length(space: Space, u: Floats, v: Floats) -> float:
-    """Length of the shortest path, over the corners it can turn at; else the straight distance."""
-    nodes = np.concatenate([[u, v], corners(space).turns])
-    straight = float(np.linalg.norm(v - u))
+def _shortest_length(nodes: Floats, ratios: Floats) -> float:
+    """Length of the shortest path from the first node to the second, turning at the others."""
+    straight = float(np.linalg.norm(nodes[1] - nodes[0]))
     if len(nodes) == 2:
         return straight
-    seen = np.isfinite(_pairwise(space, nodes))
+    seen = np.isfinite(ratios)
     lengths = np.where(seen, np.linalg.norm(nodes[:, None] - nodes, axis=2), 0.0)
     found = float(dijkstra(lengths, indices=0)[1])
     # Turning beside a corner instead of at it makes it a little longer than the shortest.
     return max(straight, found * (1.0 - 1e-6)) if math.isfinite(found) else straight
 
 
-def _best_chain(space: Space, nodes: Floats, n_links: float) -> Floats | None:
+def _best_chain(nodes: Floats, ratios: Floats, n_links: float) -> Floats | None:
     """Return the best chain (m, 2) from the first node to the second over the others."""
-    ratios = _pairwise(space, nodes)
     if n_links == math.inf:
         costs = np.where(np.isfinite(ratios), np.log1p(np.minimum(ratios, 1e300)), 0.0)
         total, before = dijkstra(costs, indices=0, return_predecessors=True)

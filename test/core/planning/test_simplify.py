@@ -10,6 +10,7 @@ from test.laws import maps
 
 from hnr_planner.core import GridSpace, plan, RequestError, simplify
 from hnr_planner.core.lengths import path_length
+from hnr_planner.core.planning.homology import NO_ISLANDS
 from hnr_planner.core.planning.shortcuts import pull, skip
 import numpy as np
 from numpy.typing import NDArray
@@ -94,8 +95,8 @@ def test_no_work_and_no_time_leave_the_path_as_it_is():
 def test_the_number_of_visibility_tests_is_never_exceeded(budget: int, every: bool):
     points = SPACE.to_kernel(chain(3))
     kept = np.zeros(len(points), dtype=np.int64)
-    assert skip(SPACE.data, None, points, kept, 1, every, budget)[1] <= budget
-    assert pull(SPACE.data, None, points, 1, SPACE.margin, budget)[2] <= budget
+    assert skip(SPACE.data, NO_ISLANDS, points, kept, 1, every, budget)[1] <= budget
+    assert pull(SPACE.data, NO_ISLANDS, points, 1, SPACE.margin, budget)[2] <= budget
 
 
 COMPILING = """

@@ -6,7 +6,7 @@ from hnr_planner.core import Space
 from hnr_planner.core.checks import Floats
 from hnr_planner.core.kernels import kernel
 from hnr_planner.core.sampling.chains import new_chain
-from hnr_planner.core.sampling.steps import make_walk, take_step, Walk
+from hnr_planner.core.sampling.walks import make_walk, take_step, Walk
 from hnr_planner.core.spaces.places import place, remember
 from hnr_planner.core.streams import stream
 import numpy as np

@@ -22,7 +22,7 @@ from hnr_planner.core import (
 )
 from hnr_planner.core.kernels import interpreted
 from hnr_planner.core.sampling.chains import new_chain, take_steps
-from hnr_planner.core.sampling.steps import make_walk
+from hnr_planner.core.sampling.walks import make_walk
 from hnr_planner.core.spaces.places import chord_at, NO_AXIS, place, REFRESH, remember
 from hnr_planner.core.streams import stream
 import numpy as np

@@ -10,7 +10,7 @@ from test.core.sampling.test_chains import polytope, simplex
 
 from hnr_planner.core.kernels import kernel
 from hnr_planner.core.sampling.chains import new_chain
-from hnr_planner.core.sampling.steps import make_walk, take_step
+from hnr_planner.core.sampling.walks import make_walk, take_step
 from hnr_planner.core.spaces.places import place, remember
 from hnr_planner.core.streams import stream
 import numpy as np

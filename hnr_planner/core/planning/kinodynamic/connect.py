@@ -18,6 +18,7 @@ from hnr_planner.core.checks import Floats
 from hnr_planner.core.kernels import kernel
 from hnr_planner.core.lengths import distance, norm
 from hnr_planner.core.planning.hit_and_run_connect import HitAndRunConnect
+from hnr_planner.core.planning.homology import NO_ISLANDS
 from hnr_planner.core.planning.kinodynamic.problem import (
     Boundary,
     KinodynamicProblem,
@@ -33,7 +34,7 @@ from hnr_planner.core.planning.search import (
     with_room,
 )
 from hnr_planner.core.planning.shortcuts import pull, skip
-from hnr_planner.core.sampling.walks import draw_direction
+from hnr_planner.core.sampling.draws import draw_direction
 from hnr_planner.core.streams import Stream, uniform
 from hnr_planner.core.systems.primitives import brake, contact, move
 from hnr_planner.core.trees import NONE
@@ -219,19 +220,14 @@ def _curve_step(problem, rng, steps, row, n_rows):
     return duration > 0.0 and norm(end[dim:]) <= system.max_speed
 
 
-@kernel
-def _fewer(place, stops):
-    """Leave out the stops that are not needed, and pull the way taut."""
+def _fewer(place: Problem, stops: Floats) -> Floats:
+    """Leave out the stops (m, dim) that are not needed, and pull the way taut."""
     kept = np.zeros(len(stops), dtype=np.int64)
-    n_kept, _ = skip(place.space, None, stops, kept, 1, True, TESTS)
-    last = kept[n_kept - 1] + 1
-    n_rest = len(stops) - last
-    left = np.empty((n_kept + n_rest, stops.shape[1]))
-    for k in range(n_kept):
-        left[k] = stops[kept[k]]
-    for k in range(n_rest):
-        left[n_kept + k] = stops[last + k]
-    taut, _, _ = pull(place.space, None, left, 1, place.margin, TESTS)
+    n_kept, _ = skip(place.space, NO_ISLANDS, stops, kept, 1, True, TESTS)
+    beyond = kept[n_kept - 1] + 1
+    left = np.concatenate([stops[kept[:n_kept]], stops[beyond:]])
+    taut: Floats
+    taut, _, _ = pull(place.space, NO_ISLANDS, left, 1, place.margin, TESTS)
     return taut
 
 

@@ -23,8 +23,6 @@ import numpy as np
 
 #: Halvings between a time that is feasible and one that is not.
 HALVINGS = 14
-#: Doublings of the shortest time imaginable until one is feasible.
-DOUBLINGS = 40
 #: Part of the limit on acceleration that connections leave alone, and part of the limit on speed
 #: by which they may seem to exceed it: both are rounding.
 SPARE, EXCESS = 1e-12, 1e-10
@@ -78,17 +76,9 @@ def connect(system, a, b, longest, room):
     """
     Find a fast connection from state ``a`` to ``b``, in ``room``: its duration, inf for none.
 
-    It takes at most ``longest``; for inf the search begins with the shortest time imaginable. A
-    shorter one may exist beyond times that are not feasible.
+    It takes at most ``longest``. A shorter one may exist beyond times that are not feasible.
     """
-    too_short = _prepare(system, a, b, room)
-    enough = longest
-    if enough == math.inf:
-        enough = max(too_short, 1e-9)
-        for _ in range(DOUBLINGS):
-            if _fits(system, enough, room):
-                break
-            too_short, enough = enough, 2.0 * enough
+    too_short, enough = _prepare(system, a, b, room), longest
     if too_short > enough or not _fits(system, enough, room):
         return math.inf
     for _ in range(HALVINGS):

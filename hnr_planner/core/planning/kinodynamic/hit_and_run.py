@@ -16,7 +16,7 @@ from hnr_planner.core.planning.kinodynamic.steps import (
     DrivenPlanner,
     DrivenSearch,
 )
-from hnr_planner.core.sampling.walks import draw_in_ball, hit_and_run_step
+from hnr_planner.core.sampling.draws import draw_in_ball, hit_and_run_step
 from hnr_planner.core.streams import Stream
 import numpy as np
 

@@ -20,7 +20,7 @@ from hnr_planner.core.planning.kinodynamic.steps import (
 from hnr_planner.core.planning.nearest import BoxTree, empty_box_tree, grown, insert, nearest
 from hnr_planner.core.planning.rrt import draw_in_box, PROPOSALS_PER_ITERATION
 from hnr_planner.core.planning.search import with_room
-from hnr_planner.core.sampling.walks import draw_in_ball
+from hnr_planner.core.sampling.draws import draw_in_ball
 from hnr_planner.core.spaces.primitives import contains
 from hnr_planner.core.streams import Stream
 from hnr_planner.core.systems.primitives import velocity

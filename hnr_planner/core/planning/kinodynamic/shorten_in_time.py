@@ -12,7 +12,7 @@ from hnr_planner.core.borrowed import borrowed
 from hnr_planner.core.kernels import kernel
 from hnr_planner.core.planning.kinodynamic.connection import connect, empty_connection
 from hnr_planner.core.planning.kinodynamic.problem import is_at_goal, KinodynamicProblem, Motion
-from hnr_planner.core.sampling.walks import draw_in_ball
+from hnr_planner.core.sampling.draws import draw_in_ball
 from hnr_planner.core.streams import normal, Stream, uniform
 from hnr_planner.core.systems.primitives import contact, move
 import numpy as np

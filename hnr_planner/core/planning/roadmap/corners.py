@@ -10,7 +10,7 @@ in more dimensions points on their edges.
 from hnr_planner.core.borrowed import borrowed
 from hnr_planner.core.kernels import kernel
 from hnr_planner.core.lengths import norm
-from hnr_planner.core.sampling.walks import hit_and_run_step
+from hnr_planner.core.sampling.draws import hit_and_run_step
 from hnr_planner.core.spaces.primitives import contains, leave, sees
 import numpy as np
 

@@ -6,7 +6,7 @@ from hnr_planner.core.checks import Floats
 from hnr_planner.core.kernels import kernel
 from hnr_planner.core.planning.roadmap.knowledge import Knowledge
 from hnr_planner.core.planning.rrt import draw_in_box
-from hnr_planner.core.sampling.walks import hit_and_run_step
+from hnr_planner.core.sampling.draws import hit_and_run_step
 from hnr_planner.core.spaces.primitives import are_free, contains
 from hnr_planner.core.spaces.space import Space
 from hnr_planner.core.streams import stream

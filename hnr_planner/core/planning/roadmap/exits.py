@@ -13,7 +13,7 @@ from hnr_planner.core.borrowed import borrowed
 from hnr_planner.core.checks import Floats
 from hnr_planner.core.kernels import kernel
 from hnr_planner.core.lengths import norm
-from hnr_planner.core.sampling.walks import hit_and_run_step
+from hnr_planner.core.sampling.draws import hit_and_run_step
 from hnr_planner.core.spaces.primitives import contains, sees
 from hnr_planner.core.trees import NONE
 import numpy as np

@@ -11,11 +11,15 @@ import pytest
 SYSTEM = DoubleIntegrator(max_acceleration=1.5, max_speed=2.0)
 
 
-def pieces(a: Any, b: Any, longest: float = math.inf, system: Any = SYSTEM) -> Any:
-    """Return duration and pieces of the connection from ``a`` to ``b``."""
+def pieces(a: Any, b: Any, longest: float | None = None, system: Any = SYSTEM) -> Any:
+    """Return duration and pieces of the connection from ``a`` to ``b``, in whatever time."""
     a, b = np.asarray(a, dtype=float), np.asarray(b, dtype=float)
     room = empty_connection(len(a) // 2)
-    duration = connect(system.data, a, b, longest, room)
+    limits = 1e-3 * 2.0 ** np.arange(30) if longest is None else [longest]
+    for limit in limits:
+        duration = connect(system.data, a, b, float(limit), room)
+        if duration < math.inf:
+            break
     n = room.n[0]
     return duration, room.durations[:n].copy(), room.controls[:n].copy()
 
