@@ -109,7 +109,7 @@ def figure(results: Results) -> Figure:
     for name in ALGORITHMS:
         shown = median_run(results, Case('serpentine', SHOWN_WIDTH, name, 'arrival'), search)
         draw_run(axes[name], made, shown, LOOKS[name].label)
-        axes[name].plot(*shown.path.T, color=LOOKS[name].colour, linewidth=0.8)
+        axes[name].plot(*shown.path.T, color=LOOKS[name].colour, linewidth=1.0)
     return drawn
 
 
