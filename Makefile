@@ -28,7 +28,7 @@ help:
 	@echo 'make check                 format, lint, types, spelling, then the tests'
 	@echo 'make bench                 side by side with OMPL, grid search and hopsy, half an hour'
 	@echo 'make bench QUICK=1         the same in some minutes, for a look'
-	@echo 'make figures               the experiments of docs/ again, about an hour'
+	@echo 'make figures               the experiments of docs/ again, half an hour'
 	@echo 'make figures RUNS=5        the same in some minutes, for a look'
 	@echo 'make format                put the sources into shape'
 	@echo 'make clean                 remove .venv and all that was built'
@@ -101,9 +101,11 @@ bench: install
 	done
 	$(VENV) -m benchmarks $(if $(QUICK),--quick)
 
+# The tables of the pages in docs/ follow; what the pages say of them is for people to write.
 .PHONY: figures
 figures: install
 	$(VENV) -m hnr_planner experiment $(if $(RUNS),--runs $(RUNS)) --out docs/figures
+	$(VENV) -m hnr_planner.experiments
 
 .PHONY: format
 format: install

@@ -8,7 +8,7 @@ import math
 from test.curve_brute_force import double_integrator_faults
 from typing import NamedTuple
 
-from benchmarks.corridors import RESOLUTION, serpentine, zigzag
+from benchmarks.made_maps import slanted_z
 from benchmarks.ompl.control import ControlSession
 from benchmarks.ompl.driver import MissingOmpl
 from benchmarks.problems import Floats, Problem
@@ -16,6 +16,7 @@ from benchmarks.progress import show
 from benchmarks.sections import Bench, milliseconds, on_all, Section, table
 from hnr_planner.core import GridSpace, plan
 from hnr_planner.core.systems import DoubleIntegrator
+from hnr_planner.maps import serpentine
 import numpy as np
 
 SYSTEM = DoubleIntegrator(dim=2, max_acceleration=1.0, max_speed=2.0)
@@ -106,15 +107,15 @@ def kinodynamic(bench: Bench) -> Section:
 
 def _courses(bench: Bench) -> list[Problem]:
     """Serpentines, a Z and two robot maps; few requests on each."""
-    made = []
-    for width in (1.0, 2.0, 3.0):
-        blocked = serpentine(width)
-        far = np.array(blocked.shape[::-1]) * RESOLUTION - width / 2
-        made.append((f'serpentine {width:g}', blocked, ((width / 2, width / 2), far)))
-    made.append(('Z 1.5', zigzag(1.5), ((0.75, 0.75), (9.25, 9.25))))
+    corridors = {f'serpentine {width:g}': serpentine(width) for width in (1.0, 2.0, 3.0)}
+    corridors['Z 1.5'] = slanted_z(1.5)
     courses = [
-        Problem(name, GridSpace.from_blocked(blocked, RESOLUTION), np.array([ends]))
-        for name, blocked, ends in made
+        Problem(
+            name,
+            GridSpace.from_blocked(made.blocked, made.resolution),
+            np.array([[made.start, made.goal]]),
+        )
+        for name, made in corridors.items()
     ]
     robots = [problem for problem in bench.problems if problem.name in ('office', 'depot')]
     return courses + [problem.with_requests(problem.requests[:5]) for problem in robots]

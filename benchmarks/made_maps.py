@@ -1,8 +1,8 @@
-"""Maps that anybody can make again: a warehouse, a maze with loops, a yard full of clutter."""
+"""Maps that anybody can make again: a warehouse, a maze, a yard full of clutter, a slanted Z."""
 
 from __future__ import annotations
 
-from hnr_planner.maps import FREE, OccupancyMap, OCCUPIED
+from hnr_planner.maps import Corridor, FREE, OccupancyMap, OCCUPIED
 import numpy as np
 from numpy.typing import NDArray
 
@@ -43,6 +43,18 @@ def clutter() -> OccupancyMap:
     for bottom, left in rng.uniform(0.5, 29.0, (400, 2)):
         _fill(data, bottom, left, *rng.uniform(0.1, 1.2, 2))
     return OccupancyMap(data, RESOLUTION)
+
+
+def slanted_z(width: float) -> Corridor:
+    """Build a Z that fills a square of 10 m; the edge of its bar is a staircase of cells."""
+    side, w = round(10.0 / RESOLUTION), round(width / RESOLUTION)
+    blocked = np.ones((side, side), dtype=bool)
+    blocked[:w] = blocked[-w:] = False
+    for row in range(w, side - w):
+        left = round((side - w) * (side - w - row) / (side - 2 * w))
+        blocked[row, left:][:w] = False
+    near, far = width / 2, 10.0 - width / 2
+    return Corridor(blocked, RESOLUTION, (near, near), (far, far), width / 2)
 
 
 def _doors(rng: np.random.Generator, side: int) -> list[tuple[int, int, bool]]:

@@ -9,6 +9,7 @@ from pathlib import Path
 
 from benchmarks.made_maps import clutter, maze, warehouse
 from hnr_planner.core import GridSpace
+from hnr_planner.experiments.requests import far_pairs
 from hnr_planner.maps import load_map, OccupancyMap, spiral
 import numpy as np
 from numpy.typing import NDArray
@@ -22,8 +23,6 @@ ROBOT_RADIUS = dict.fromkeys(
 )
 WIDTHS = (2.0, 1.6, 1.2, 1.0, 0.8, 0.6, 0.4)
 PAIRS = 20
-#: Least distance of a pair, as a part of the diagonal of the box around the free space.
-LEAST_APART = 0.4
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,7 +81,7 @@ def missing_maps() -> list[str]:
 def _map_problem(name: str, grid: OccupancyMap) -> Problem:
     radius = ROBOT_RADIUS.get(name, 0.0)
     space = GridSpace.from_occupancy(grid.data, grid.resolution, grid.origin, robot_radius=radius)
-    return Problem(name, space, pairs(space, PAIRS))
+    return Problem(name, space, far_pairs(space, PAIRS, seed=0))
 
 
 def _spiral_problem(width: float) -> Problem:
@@ -91,16 +90,3 @@ def _spiral_problem(width: float) -> Problem:
     # Grid search goes from cell centre to cell centre.
     columns, rows = (np.array([made.start, made.goal]) / made.resolution).astype(int).T
     return Problem(f'spiral {width:.1f}', space, space.cell_centres(rows, columns)[np.newaxis])
-
-
-def pairs(space: GridSpace, n_pairs: int) -> Floats:
-    """Draw requests (n_pairs, 2, 2) [m] between cells of the largest part, far from each other."""
-    rng = np.random.default_rng(0)
-    rows, columns = np.nonzero(space.largest_component())
-    diagonal = np.hypot(np.ptp(rows), np.ptp(columns))
-    found: list[Floats] = []
-    while len(found) < n_pairs:
-        k = rng.integers(len(rows), size=2)
-        if np.hypot(*(np.diff(rows[k]), np.diff(columns[k]))) >= LEAST_APART * diagonal:
-            found.append(space.cell_centres(rows[k], columns[k]))
-    return np.array(found)

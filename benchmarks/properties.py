@@ -9,11 +9,12 @@ import threading
 import time
 from typing import Any
 
-from benchmarks.problems import OFFICE, pairs
+from benchmarks.problems import OFFICE
 from benchmarks.progress import show
 from benchmarks.sections import Bench, Section, Verdict, verdict_table
 import cv2
 from hnr_planner.core import GridSpace, plan
+from hnr_planner.experiments.requests import far_pairs
 from hnr_planner.maps import load_map, spiral
 import numpy as np
 from numpy.typing import NDArray
@@ -89,7 +90,7 @@ def _readiness(n_repeats: int) -> Iterator[Verdict]:
 def _growth(factors: tuple[int, ...], n_runs: int) -> Verdict:
     """Time the same requests in the same building, with the cells of the coarsest repeated."""
     coarse = _office(BUILDING)
-    requests = pairs(GridSpace.from_occupancy(coarse, 1.0), 10)
+    requests = far_pairs(GridSpace.from_occupancy(coarse, 1.0), 10, seed=0)
     typical = []
     for factor in factors:
         data = np.kron(coarse, np.ones((factor, factor), dtype=np.int8))

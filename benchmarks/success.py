@@ -7,10 +7,11 @@ from typing import NamedTuple
 
 from benchmarks.competitors import Run, TIME_LIMIT
 from benchmarks.judge import Judge
-from benchmarks.problems import PAIRS, pairs, Problem
+from benchmarks.problems import PAIRS, Problem
 from benchmarks.progress import show
 from benchmarks.sections import Bench, milliseconds, on_all, Section, table
 from hnr_planner.core import plan
+from hnr_planner.experiments.requests import far_pairs
 import numpy as np
 
 SEEDS = 50
@@ -46,7 +47,8 @@ def success(bench: Bench) -> Section:
 
 def _count(problem: Problem, seeds: int) -> Successes:
     """Run every pair with every seed; on a spiral the pairs are drawn as on the maps."""
-    problem = problem.with_requests(pairs(problem.space, PAIRS)) if problem.is_spiral else problem
+    if problem.is_spiral:
+        problem = problem.with_requests(far_pairs(problem.space, PAIRS, seed=0))
     judge, in_time, slowest = Judge(problem), 0, 0.0
     for number, (start, goal) in enumerate(problem.requests):
         show(f'{problem.name}: success for pair {number + 1} of {len(problem.requests)}')

@@ -12,7 +12,8 @@ from hnr_planner.cli.arguments import count
 NAMES = ('spiral', 'clouds', 'corridor', 'safety', 'theory')
 EPILOG = """\
 Rows are kept as they come: a run that was broken off goes on where it was, and a longer one
-continues a shorter one. A tenth of the runs of docs/ is good for a look.
+continues a shorter one. A tenth of the runs of docs/ is good for a look. Where HNR_MAPS names a
+folder, its map_server maps take part in safety.
 
 examples:
   python -m hnr_planner experiment spiral --runs 50 --show

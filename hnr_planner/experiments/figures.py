@@ -1,25 +1,25 @@
 """
 How the figures of the experiments look.
 
-Every algorithm has one colour, one mark and one name in all of them. The colours are those of
-Okabe and Ito, which people with any kind of colour vision can tell apart; the marks still tell
-when a figure is printed in grey. Lines are means, the bands around them their 95 % intervals.
+Every algorithm has one colour, one mark and one name in all of them. People with any kind of
+colour vision can tell the colours apart; the marks still tell when a figure is printed in grey.
+Lines are means, the bands around them their 95 % intervals.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Literal, NamedTuple
 
-from hnr_planner.drawing import FAINT_INK, INK
+from hnr_planner.drawing import draw_title, FAINT_INK, FRAME, INK
 from hnr_planner.experiments.results import Mean, Results
 from matplotlib import rc_context
 from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 
 class Look(NamedTuple):
@@ -33,7 +33,7 @@ class Look(NamedTuple):
 LOOKS = {
     'hit_and_run': Look('Hit-and-Run', '#0072B2', 'o'),
     'rrt': Look('RRT', '#D55E00', 's'),
-    'auto': Look('trees of Hit-and-Run from both ends', '#009E73', '^'),
+    'auto': Look('two trees (auto)', '#009E73', '^'),
     'a_star': Look('A*', '#CC79A7', 'D'),
     'wavefront': Look('wavefront (as NavFn)', '#E69F00', 'v'),
 }
@@ -46,14 +46,12 @@ MANY = 15
 
 def new_figure(width: float, height: float) -> Figure:
     """Return an empty figure of a size [in], made without pyplot."""
-    figure = Figure(figsize=(width, height), layout='constrained')
-    FigureCanvasAgg(figure)
-    return figure
+    return Figure(figsize=(width, height), layout='constrained')
 
 
 def style(axes: Axes, title: str, x: str, y: str) -> None:
     """Give axes their words, and little ink besides."""
-    axes.set_title(title, loc='left', fontsize=10.5, color=INK, pad=8)
+    draw_title(axes, title)
     axes.set_xlabel(x, color=INK, fontsize=9.5)
     axes.set_ylabel(y, color=INK, fontsize=9.5)
     axes.tick_params(colors=FAINT_INK, labelsize=9)
@@ -61,7 +59,7 @@ def style(axes: Axes, title: str, x: str, y: str) -> None:
     axes.set_axisbelow(True)
     for side, spine in axes.spines.items():
         spine.set_visible(side in ('left', 'bottom'))
-        spine.set_color('#B4BAC1')
+        spine.set_color(FRAME)
 
 
 def draw_means(
@@ -78,6 +76,7 @@ def draw_means(
     places = sorted(results.distinct(x))
     means = [results.where(**{x: place}).mean(y) for place in places]
     draw_profile(axes, places, means, look, label=label, line=line)
+    axes.set_xticks(places)
 
 
 def draw_profile(
@@ -110,25 +109,29 @@ def draw_profile(
 def draw_bars(
     axes: Axes,
     names: Sequence[str],
-    groups: Sequence[tuple[str, Sequence[Mean]]],
+    groups: Mapping[str, Sequence[Mean]],
     colours: Sequence[str],
 ) -> None:
-    """Draw a bar for each name in each group, the later groups lighter and below."""
+    """Draw a bar for each name in each group, the later groups paler and below."""
     thickness = 0.8 / len(groups)
     at = np.arange(len(names))[::-1]
-    for k, (group, means) in enumerate(groups):
+    for k, (group, means) in enumerate(groups.items()):
         values, halves = np.array(means).T
         axes.barh(
             at + (0.5 * (len(groups) - 1) - k) * thickness,
             values,
             0.92 * thickness,
             xerr=halves,
-            color=colours,
-            alpha=1.0 if k == 0 else 0.45,
+            color=[_paler(colour, k) for colour in colours],
             error_kw={'ecolor': INK, 'elinewidth': 1.0},
         )
-        axes.barh([0], [np.nan], color=FAINT_INK, alpha=1.0 if k == 0 else 0.45, label=group)
+        axes.barh([0], [np.nan], color=_paler(FAINT_INK, k), label=group)  # for the legend
     axes.set_yticks(at, names)
+
+
+def _paler(colour: str, times: int) -> NDArray[np.float64]:
+    """Return a colour with so many times more than half of it taken by white."""
+    return 1.0 - 0.45**times * (1.0 - np.array(to_rgb(colour)))
 
 
 def legend(axes: Axes, place: Place = 'best') -> None:
@@ -142,8 +145,8 @@ def sign(figure: Figure, text: str) -> None:
 
 
 def save(figure: Figure, file: Path) -> None:
-    """Write a figure, to the byte the same for the same results."""
-    with rc_context({'svg.hashsalt': 'hnr_planner'}):
+    """Write a figure, to the byte the same for the same results; its words stay text."""
+    with rc_context({'svg.hashsalt': 'hnr_planner', 'svg.fonttype': 'none'}):
         figure.savefig(
-            file, dpi=90, facecolor='white', metadata={'Date': None}, bbox_inches='tight'
+            file, dpi=200, facecolor='white', metadata={'Date': None}, bbox_inches='tight'
         )

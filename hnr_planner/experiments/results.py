@@ -64,7 +64,15 @@ class Results:
         chosen = np.ones(len(self), dtype=bool)
         for name, value in values.items():
             chosen &= self[name] == value
+        return self.rows(chosen)
+
+    def rows(self, chosen: NDArray[np.bool_]) -> Results:
+        """Return the chosen rows."""
         return Results({name: column[chosen] for name, column in self.columns.items()})
+
+    def of(self, case: Any) -> Results:
+        """Return the rows of a case."""
+        return self.where(**case._asdict())
 
     def distinct(self, column: str) -> list[Any]:
         """Return the values of a column, each once, in the order of their first row."""

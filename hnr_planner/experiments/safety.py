@@ -8,6 +8,7 @@ goes through before a robot follows it.
 """
 
 from functools import cache
+import math
 import os
 from pathlib import Path
 from typing import NamedTuple
@@ -16,30 +17,38 @@ from hnr_planner.core import GridSpace, plan, simplify
 from hnr_planner.experiments.experiment import Experiment
 from hnr_planner.experiments.figures import draw_bars, legend, LOOKS, new_figure, style
 from hnr_planner.experiments.grid_search import a_star, wavefront
-from hnr_planner.experiments.results import markdown, Results
+from hnr_planner.experiments.requests import far_pairs
+from hnr_planner.experiments.results import markdown, Mean, Results
 from hnr_planner.maps import building, load_map, OccupancyMap
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 import numpy as np
 from numpy.typing import NDArray
 
-#: Generated floors; HNR_MAPS may name a folder of further maps, files of map_server.
-FLOORS = (2, 5, 11)
+#: Generated floors, and their seeds.
+FLOORS = {f'floor {seed}': seed for seed in (2, 5, 11)}
+#: Names a folder of robot maps, files of map_server, that take part too.
+MAPS_VARIABLE = 'HNR_MAPS'
 ROBOT_RADIUS = 0.22
 #: Nearer than this to an obstacle [m], past the robot's own radius, is near.
 NEAR = 0.1
 #: Distance of the points at which the clearance of a path is measured [m].
 SPACING = 0.02
-#: Least distance of start and goal, as a part of the diagonal of the free space.
-LEAST_APART = 0.4
 GRID_SEARCHES = {'a_star': a_star, 'wavefront': wavefront}
-ALGORITHMS = ('hit_and_run', 'rrt', 'auto', *GRID_SEARCHES)
-#: What is asked for beside them: ``plan(..., clearance=...)`` [m].
-CLEARANCE = 0.5
+#: Planners, and the clearance that they are asked to keep [m].
+PLANNERS = (
+    ('hit_and_run', 0.0),
+    ('rrt', 0.0),
+    ('auto', 0.0),
+    ('a_star', 0.0),
+    ('wavefront', 0.0),
+    ('auto', 0.5),
+)
 SHAPES = ('found', 'shortened')
 
 
 class Case(NamedTuple):
-    """A map (a floor, or a file) and a planner on it; ``clearance`` is the one asked for [m]."""
+    """A map (a floor, or the stem of a file) and a planner; the clearance is asked for [m]."""
 
     place: str
     algorithm: str
@@ -48,17 +57,19 @@ class Case(NamedTuple):
 
 def cases() -> list[Case]:
     """List every planner on every map."""
-    folder = os.environ.get('HNR_MAPS')
-    files = sorted(Path(folder).glob('*.yaml')) if folder else []
-    names = [f'floor {seed}' for seed in FLOORS] + [str(file) for file in files]
-    planners = [(algorithm, 0.0) for algorithm in ALGORITHMS] + [('auto', CLEARANCE)]
-    return [Case(name, *planner) for name in names for planner in planners]
+    return [Case(place, *planner) for place in [*FLOORS, *_robot_maps()] for planner in PLANNERS]
+
+
+def _robot_maps() -> dict[str, Path]:
+    """Return the files of the maps in the folder that the environment names, by their stems."""
+    folder = os.environ.get(MAPS_VARIABLE)
+    return {file.stem: file for file in sorted(Path(folder).glob('*.yaml'))} if folder else {}
 
 
 def run(case: Case, seed: int) -> dict[str, float]:
     """Plan between two far points of the map, and measure the path as found and shortened."""
     space = space_of(case.place)
-    ends = request(space, seed)
+    (ends,) = far_pairs(space, 1, seed)
     path = _path(space, ends, case, seed)
     # What keeps a clearance was shortened before it was pushed off the walls.
     shortened = path if case.clearance else simplify(space, path, seed=seed)
@@ -67,6 +78,19 @@ def run(case: Case, seed: int) -> dict[str, float]:
         for shape, of in zip(SHAPES, (path, shortened), strict=True)
         for name, value in measures(space, of).items()
     }
+
+
+@cache
+def space_of(place: str) -> GridSpace:
+    """Return the space of the robot on a map."""
+    occupancy = _occupancy(place)
+    return GridSpace.from_occupancy(
+        occupancy.data, occupancy.resolution, occupancy.origin, robot_radius=ROBOT_RADIUS
+    )
+
+
+def _occupancy(place: str) -> OccupancyMap:
+    return building(FLOORS[place]) if place in FLOORS else load_map(_robot_maps()[place])
 
 
 def _path(space: GridSpace, ends: NDArray, case: Case, seed: int) -> NDArray:
@@ -106,96 +130,72 @@ def _spread(path: NDArray) -> NDArray:
     return np.stack([np.interp(at, ends, path[:, axis]) for axis in (0, 1)], axis=1)
 
 
-def request(space: GridSpace, seed: int) -> NDArray:
-    """Draw start and goal (2, 2): cell centres of the largest part, far from each other."""
-    rng = np.random.default_rng(seed)
-    rows, columns = np.nonzero(space.largest_component())
-    diagonal = np.hypot(np.ptp(rows), np.ptp(columns))
-    while True:
-        pair = rng.integers(len(rows), size=2)
-        if np.hypot(*np.diff([rows[pair], columns[pair]])[:, 0]) >= LEAST_APART * diagonal:
-            return space.cell_centres(rows[pair], columns[pair])
-
-
-@cache
-def space_of(name: str) -> GridSpace:
-    """Return the space of the robot on a map."""
-    occupancy = _occupancy(name)
-    return GridSpace.from_occupancy(
-        occupancy.data, occupancy.resolution, occupancy.origin, robot_radius=ROBOT_RADIUS
-    )
-
-
-def _occupancy(name: str) -> OccupancyMap:
-    kind, _, seed = name.partition(' ')
-    return building(int(seed)) if kind == 'floor' else load_map(name)
+def _kinds(results: Results) -> dict[str, Results]:
+    """Return the results on generated floors, and those on robot maps if there are any."""
+    generated = np.isin(results['place'], list(FLOORS))
+    kinds = {'generated floors': results.rows(generated)}
+    if not generated.all():
+        kinds['robot maps'] = results.rows(~generated)
+    return kinds
 
 
 def figure(results: Results) -> Figure:
     """Draw the mean clearance and the near part of the paths, as found and shortened."""
-    drawn = new_figure(10.0, 4.0)
-    panels = drawn.subplots(1, 2)
-    planners = _planners(results)
-    for axes, measure, title, unit in zip(
-        panels,
-        ('mean', 'near'),
-        ('Mean distance to the nearest obstacle', f'Part of the path within {NEAR} m of one'),
-        ('past the robot\u2019s radius [m]', 'part of the length'),
-        strict=True,
-    ):
-        draw_bars(
-            axes,
-            [_words(*planner) for planner in planners],
-            [
-                (shape, [_of(results, planner).mean(f'{shape}_{measure}') for planner in planners])
-                for shape in SHAPES
-            ],
-            [LOOKS[algorithm].colour for algorithm, _ in planners],
-        )
-        style(axes, title, unit, '')
-        axes.grid(False, axis='y')
-    panels[1].set_yticklabels([])
-    legend(panels[1], 'lower right')
+    kinds = _kinds(results)
+    drawn = new_figure(10.0, 0.4 + 3.4 * len(kinds))
+    rows = drawn.subplots(len(kinds), 2, squeeze=False)
+    for (mean, near), (kind, chosen) in zip(rows, kinds.items(), strict=True):
+        _draw_measure(mean, chosen, 'mean')
+        _draw_measure(near, chosen, 'near')
+        words = 'from the nearest obstacle, past the robot\u2019s radius [m]'
+        style(mean, f'{kind.capitalize()}: mean distance', words, '')
+        style(near, f'{kind.capitalize()}: near', f'part of the length within {NEAR} m', '')
+        near.set_yticklabels([])
+        for axes in (mean, near):
+            axes.grid(False, axis='y')
+    legend(rows[0, 1], 'lower right')
     return drawn
 
 
+def _draw_measure(axes: Axes, results: Results, measure: str) -> None:
+    draw_bars(
+        axes,
+        [_words(*planner) for planner in PLANNERS],
+        {
+            shape: [_mean(results, planner, f'{shape}_{measure}') for planner in PLANNERS]
+            for shape in SHAPES
+        },
+        [LOOKS[algorithm].colour for algorithm, _ in PLANNERS],
+    )
+
+
 def tables(results: Results) -> str:
-    """Return the measures of every planner, over all maps and on each."""
-    header = ['planner', 'mean', 'near', 'length', 'mean', 'near', 'length']
+    """Return the measures of every planner, over all maps of a kind and on each map."""
     words = (
-        'As found: mean distance to the nearest obstacle past the robot\u2019s radius [m], part '
-        f'of the length within {NEAR} m of one, length [m]; then the same, shortened.\n'
+        'As found: mean distance to the nearest obstacle past the robot\u2019s radius, part of '
+        f'the length within {NEAR} m of one, length; then the same, shortened.\n'
     )
-    parts = [words]
-    for name, chosen in [('all maps', results)] + [
-        (Path(name).stem, results.where(place=name)) for name in results.distinct('place')
-    ]:
-        rows = [
-            [
-                _words(*planner),
-                *(
-                    _of(chosen, planner).mean(f'{shape}_{measure}')
-                    for shape in SHAPES
-                    for measure in ('mean', 'near', 'length')
-                ),
-            ]
-            for planner in _planners(chosen)
-        ]
-        parts.append(f'## {name}\n\n{markdown(header, rows)}')
-    return '\n'.join(parts)
+    kinds = {f'all {kind}': chosen for kind, chosen in _kinds(results).items()}
+    places = {place: results.where(place=place) for place in results.distinct('place')}
+    return '\n'.join([words, *(_table(*group) for group in (kinds | places).items())])
 
 
-def _planners(results: Results) -> list[tuple[str, float]]:
-    return list(
-        dict.fromkeys(
-            zip(results['algorithm'].tolist(), results['clearance'].tolist(), strict=True)
-        )
-    )
+def _table(name: str, results: Results) -> str:
+    header = [name, 'mean [m]', 'near', 'length [m]']
+    header += ['shortened: mean [m]', 'near', 'length [m]']
+    columns = [f'{shape}_{name}' for shape in SHAPES for name in ('mean', 'near', 'length')]
+    rows = [
+        [_words(*planner), *(_mean(results, planner, column) for column in columns)]
+        for planner in PLANNERS
+    ]
+    return markdown(header, rows)
 
 
-def _of(results: Results, planner: tuple[str, float]) -> Results:
-    algorithm, clearance = planner
-    return results.where(algorithm=algorithm, clearance=clearance)
+def _mean(results: Results, planner: tuple[str, float], column: str) -> Mean:
+    """Return the mean over the maps; that maps differ makes it no less certain."""
+    each = [results.of(Case(place, *planner)).mean(column) for place in results.distinct('place')]
+    values, halves = np.array(each).T
+    return Mean(float(values.mean()), math.hypot(*halves) / len(each))
 
 
 def _words(algorithm: str, clearance: float) -> str:
@@ -206,7 +206,7 @@ def _words(algorithm: str, clearance: float) -> str:
 EXPERIMENT = Experiment(
     name='safety',
     about='Distance to obstacles along the paths of different planners.',
-    runs=100,
+    runs=500,
     cases=cases,
     run=run,
     figure=figure,

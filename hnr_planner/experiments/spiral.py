@@ -9,18 +9,18 @@ from functools import cache
 from typing import Any, NamedTuple
 
 from hnr_planner.core import GridSpace, plan, PlanResult
-from hnr_planner.drawing import draw_ends, draw_map, draw_samples, INK
 from hnr_planner.experiments.experiment import Experiment
 from hnr_planner.experiments.figures import draw_means, legend, LOOKS, new_figure, style
+from hnr_planner.experiments.median_run import draw_run, median_run
 from hnr_planner.experiments.results import markdown, Results
-from hnr_planner.maps import OccupancyMap, Spiral, spiral
+from hnr_planner.maps import Corridor, spiral
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 import numpy as np
 
-#: Widths of the corridor [m] in a square of 10 m.
+#: Widths of the arms [m] in a square of 10 m.
 WIDTHS = (0.6, 0.8, 1.0, 1.2, 1.4, 1.6, 1.8, 2.0, 2.2, 2.4)
-#: The other family: a corridor of one width, with a middle arm of these widths [m]. The square
+#: The other family: arms of one width, but for the middle one with these widths [m]. The square
 #: grows with that arm, so that the corridor keeps its number of arms (17 or 18).
 NARROW = 1.0
 MIDDLES = (1.0, 1.5, 2.0, 3.0, 4.0, 5.0)
@@ -39,7 +39,7 @@ LAYOUT: list[Any] = [['even', 'fat'], ['hit_and_run', 'rrt']]
 
 
 class Case(NamedTuple):
-    """A spiral and a search through it; widths in metres."""
+    """A spiral and a search through it; widths of the arms and of the middle one [m]."""
 
     family: str
     width: float
@@ -48,11 +48,14 @@ class Case(NamedTuple):
     ends: str
 
 
+#: The first three fields of the cases: the spirals of both families.
+EVEN = [('even', width, width) for width in WIDTHS]
+FAT = [('fat', NARROW, middle) for middle in MIDDLES]
+
+
 def cases() -> list[Case]:
-    """List both families."""
-    even = [('even', width, width) for width in WIDTHS]
-    fat = [('fat', NARROW, middle) for middle in MIDDLES]
-    return [Case(*shape, *search) for shape in even + fat for search in SEARCHES]
+    """List every search through every spiral."""
+    return [Case(*shape, *search) for shape in EVEN + FAT for search in SEARCHES]
 
 
 def run(case: Case, seed: int) -> dict[str, float]:
@@ -81,7 +84,7 @@ def search(case: Case, seed: int) -> PlanResult:
 
 
 @cache
-def built(width: float, middle: float) -> tuple[Spiral, GridSpace]:
+def built(width: float, middle: float) -> tuple[Corridor, GridSpace]:
     """Build a spiral and its space."""
     if middle == width:
         made = spiral(width)
@@ -94,9 +97,9 @@ def figure(results: Results) -> Figure:
     """Draw transitions over both families' widths, and the samples of one run of each planner."""
     drawn = new_figure(10.0, 9.2)
     axes = drawn.subplot_mosaic(LAYOUT, height_ratios=(1, 1.1))
-    _draw_family(axes['even'], results.where(family='even'), 'width')
+    _draw_family(axes['even'], results.where(family='even'))
     style(axes['even'], 'All arms equally wide', 'width of the arms [m]', 'transitions, mean')
-    _draw_family(axes['fat'], results.where(family='fat'), 'middle')
+    _draw_family(axes['fat'], results.where(family='fat'))
     style(
         axes['fat'],
         f'Arms {NARROW} m wide, the middle one fatter',
@@ -104,63 +107,45 @@ def figure(results: Results) -> Figure:
         'transitions, mean',
     )
     legend(axes['even'], 'lower left')
+    made, _ = built(SHOWN_WIDTH, SHOWN_WIDTH)
     for name in ('hit_and_run', 'rrt'):
-        _draw_typical_run(axes[name], results, name)
+        shown = Case('even', SHOWN_WIDTH, SHOWN_WIDTH, name, 'region')
+        words = f'{LOOKS[name].label}, width {SHOWN_WIDTH}'
+        draw_run(axes[name], made, median_run(results, shown, search), words)
     return drawn
 
 
-def _draw_family(axes: Axes, results: Results, x: str) -> None:
+def _draw_family(axes: Axes, results: Results) -> None:
     for algorithm, ends in SEARCHES:
         chosen = results.where(algorithm=algorithm, ends=ends)
-        look = LOOKS[algorithm]
-        line, words = ('-', look.label) if ends == 'region' else ('--', f'{look.label}, by sight')
-        draw_means(axes, chosen, x, 'transitions', look, label=words, line=line)
+        line = '-' if ends == 'region' else '--'
+        words = _words(algorithm, ends)
+        draw_means(axes, chosen, 'middle', 'transitions', LOOKS[algorithm], label=words, line=line)
     axes.set_yscale('log')
 
 
-def _draw_typical_run(axes: Axes, results: Results, algorithm: str) -> None:
-    """Draw the samples of the run whose number of transitions is the median one."""
-    case = Case('even', SHOWN_WIDTH, SHOWN_WIDTH, algorithm, 'region')
-    runs = results.where(**case._asdict())
-    median = np.argsort(runs['transitions'])[len(runs) // 2]
-    made, space = built(SHOWN_WIDTH, SHOWN_WIDTH)
-    result = search(case, int(runs['seed'][median]))
-    occupancy = OccupancyMap(np.where(space.blocked, 100, 0).astype(np.int8), made.resolution)
-    draw_map(axes, occupancy)
-    draw_samples(axes, result.samples)
-    draw_ends(axes, made.start, made.goal)
-    axes.set_title(
-        f'{LOOKS[algorithm].label}: the median run at width {SHOWN_WIDTH}, '
-        f'{result.iterations:,} transitions',
-        loc='left',
-        fontsize=10.5,
-        color=INK,
-        pad=8,
-    )
-
-
 def tables(results: Results) -> str:
-    """Return the mean transitions of every search on every spiral."""
-    return '\n'.join(
-        _table(results.where(family=family), column, words)
-        for family, column, words in (
-            ('even', 'width', 'width of the arms [m]'),
-            ('fat', 'middle', f'width of the middle arm [m], the others {NARROW}'),
-        )
-    )
+    """Return the mean transitions of every search on every spiral, a table for each family."""
+    families = {
+        'width of the arms [m]': EVEN,
+        f'width of the middle arm [m], the others {NARROW}': FAT,
+    }
+    return '\n'.join(_table(results, *family) for family in families.items())
 
 
-def _table(results: Results, column: str, words: str) -> str:
-    header = [words, *(f'{LOOKS[name].label}, {ends}' for name, ends in SEARCHES), 'ratio']
+def _table(results: Results, words: str, shapes: list[tuple[str, float, float]]) -> str:
+    header = [words, *(_words(*search) for search in SEARCHES), 'RRT / Hit-and-Run']
     rows = []
-    for width in results.distinct(column):
-        here = results.where(**{column: width})
-        means = [
-            here.where(algorithm=algorithm, ends=ends).mean('transitions')
-            for algorithm, ends in SEARCHES
-        ]
-        rows.append([width, *means, f'{means[1].value / means[0].value:.2f}'])
+    for shape in shapes:
+        means = [results.of(Case(*shape, *search)).mean('transitions') for search in SEARCHES]
+        hit_and_run, rrt, *_ = means
+        rows.append([shape[-1], *means, f'{rrt.value / hit_and_run.value:.2f}'])
     return markdown(header, rows)
+
+
+def _words(algorithm: str, ends: str) -> str:
+    label = LOOKS[algorithm].label
+    return label if ends == 'region' else f'{label}, by sight'
 
 
 EXPERIMENT = Experiment(

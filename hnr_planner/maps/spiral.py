@@ -12,24 +12,8 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
+from hnr_planner.maps.corridor import Corridor
 import numpy as np
-from numpy.typing import NDArray
-
-
-class Spiral(NamedTuple):
-    """
-    A spiral corridor and a request from its one end to its other.
-
-    ``blocked`` is (rows, cols) bool with row 0 at the bottom. ``start`` and ``goal`` (x, y) [m]
-    lie in the middle of the corridor, half its width from its ends; the paper's goal region
-    around the goal has the radius ``goal_radius`` [m], half the corridor's width.
-    """
-
-    blocked: NDArray[np.bool_]
-    resolution: float
-    start: tuple[float, float]
-    goal: tuple[float, float]
-    goal_radius: float
 
 
 class _Arm(NamedTuple):
@@ -48,7 +32,7 @@ def spiral(
     wall: float = 0.1,
     size: float = 10.0,
     middle_width: float | None = None,
-) -> Spiral:
+) -> Corridor:
     """
     Build the spiral corridor.
 
@@ -85,7 +69,7 @@ def spiral(
     blocked = np.ones((side, side), bool)
     for arm in arms:
         blocked[arm.rows, arm.columns] = False
-    return Spiral(
+    return Corridor(
         blocked,
         resolution,
         start=_end(arms[0]._replace(heading=2), resolution),

@@ -95,7 +95,7 @@ def write_page(
 
 def _map(occupancy: OccupancyMap, space: GridSpace) -> dict[str, Any]:
     """Return the map as an image of its cells, row 0 first, and its place."""
-    image = Image.fromarray(cell_kinds(occupancy, space.blocked, 65).astype(np.uint8), mode='P')
+    image = Image.fromarray(cell_kinds(occupancy, space.blocked).astype(np.uint8), mode='P')
     colours = np.round(255 * np.array([to_rgb(colour) for _, colour in KINDS]))
     image.putpalette(colours.astype(np.uint8).tobytes())
     written = BytesIO()

@@ -72,6 +72,19 @@ def test_later_samples_are_darker(rooms: OccupancyMap) -> None:
     assert light[0] > light[1] > light[2]
 
 
+def test_cells_of_samples_are_drawn_where_they_are_and_the_last_one_counts() -> None:
+    figure = Figure(figsize=(8, 6))
+    axes = figure.subplots()
+    drawing.draw_map(axes, OccupancyMap(np.zeros((40, 60), dtype=np.int8), 0.5))
+    view = axes.get_xlim(), axes.get_ylim()
+    drawing.draw_sample_cells(axes, [(20.2, 10.4), (7.8, 7.6), (20.4, 10.1)], 0.5)
+    assert (axes.get_xlim(), axes.get_ylim()) == view
+    for (x, y), age in (((20.25, 10.25), 1.0), ((7.75, 7.75), 0.5)):
+        assert np.abs(colour_at(figure, (x, y)) - drawing.AGES(age)[:3]).max() < 0.02
+        for beside in ((x - 0.5, y), (x + 0.5, y), (x, y - 0.5), (x, y + 0.5)):
+            assert np.abs(colour_at(figure, beside) - 1.0).max() < 0.02
+
+
 def test_view_is_fitted_to_what_is_known() -> None:
     data = np.full((100, 100), -1, dtype=np.int8)
     data[40:50, 60:80] = 0

@@ -1,10 +1,15 @@
 """Every experiment runs, repeats itself, and draws what it measured."""
 
+from dataclasses import replace
 from pathlib import Path
+import re
 
 from hnr_planner.core import GridSpace
 from hnr_planner.experiments import clouds, load, NAMES, safety
 from hnr_planner.experiments.conduct import conduct
+from hnr_planner.experiments.requests import far_pairs
+from hnr_planner.experiments.results import Results
+from hnr_planner.maps import OccupancyMap, save_map
 import numpy as np
 import pytest
 
@@ -26,7 +31,7 @@ def test_every_experiment_runs_and_repeats_itself(
         assert {column: results[column][k] for column in again} == pytest.approx(
             dict(again), rel=0.0, abs=0.0, nan_ok=True
         )
-    assert (tmp_path / f'{name}.svg').stat().st_size < 800_000
+    assert (tmp_path / f'{name}.svg').stat().st_size < 250_000
 
 
 @pytest.mark.parametrize('name', NAMES)
@@ -35,7 +40,7 @@ def test_every_experiment_has_its_page_and_figure(name: str) -> None:
     assert f'figures/{name}.svg' in page
     assert f'python -m hnr_planner experiment {name}' in page
     assert f'({name}.md)' in (ROOT / 'docs' / 'README.md').read_text()
-    assert (ROOT / 'docs' / 'figures' / f'{name}.svg').stat().st_size < 600_000
+    assert (ROOT / 'docs' / 'figures' / f'{name}.svg').stat().st_size < 150_000
 
 
 # -- safety
@@ -57,15 +62,67 @@ def test_clearance_is_measured_along_the_whole_path() -> None:
     assert measured['near_length'] == pytest.approx(12.0 * near, abs=0.05)
 
 
+@pytest.mark.parametrize('seed', range(5))
+def test_start_and_goal_are_far_apart_in_one_part(seed: int) -> None:
+    blocked = np.zeros((30, 80), dtype=bool)
+    blocked[:, 60] = True
+    space = GridSpace.from_blocked(blocked, 0.1)
+    pairs = far_pairs(space, 50, seed)
+    assert (pairs == far_pairs(space, 50, seed)).all()
+    assert (pairs[:10] == far_pairs(space, 10, seed)).all()
+    assert space.contains(pairs.reshape(-1, 2)).all()
+    assert (pairs[..., 0] < 6.0).all()
+    distances = np.hypot(*(pairs[:, 1] - pairs[:, 0]).T)
+    assert distances.min() >= 0.4 * np.hypot(2.9, 5.9) - 1e-9
+
+
+@pytest.fixture
+def with_a_robot_map(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Lay a hall with a pillar into the folder of robot maps."""
+    data = np.zeros((80, 120), dtype=np.int8)
+    data[[0, -1]], data[:, [0, -1]], data[30:50, 50:60] = 100, 100, 100
+    save_map(OccupancyMap(data, 0.05), tmp_path / 'hall.yaml')
+    monkeypatch.setenv(safety.MAPS_VARIABLE, str(tmp_path))
+
+
+@pytest.mark.usefixtures('with_a_robot_map')
+def test_robot_maps_take_part_by_name_and_are_told_apart(tmp_path: Path) -> None:
+    cases = [case for case in safety.cases() if case.place in ('floor 2', 'hall')]
+    assert len(cases) == 2 * len(safety.PLANNERS)
+    two_maps = replace(safety.EXPERIMENT, cases=lambda: cases)
+    results = conduct(two_maps, 1, tmp_path / 'out', n_jobs=1)
+    assert len(safety.figure(results).axes) == 4
+    written = (tmp_path / 'out' / 'safety.md').read_text()
+    headers = re.findall(r'^\| ([^|]+) \| mean', written, re.MULTILINE)
+    assert headers == ['all generated floors', 'all robot maps', 'floor 2', 'hall']
+    for file in (tmp_path / 'out').iterdir():
+        assert str(tmp_path) not in file.read_text()
+
+
+def test_mean_over_maps_is_as_certain_as_each_of_them() -> None:
+    values = np.array([1.0, 3.0, 11.0, 13.0])
+    results = Results(
+        {
+            'place': np.array(['near', 'near', 'far', 'far']),
+            'algorithm': np.full(4, 'rrt'),
+            'clearance': np.zeros(4),
+            'found_mean': values,
+        }
+    )
+    table = safety._mean(results, ('rrt', 0.0), 'found_mean')
+    assert table.value == pytest.approx(7.0)
+    assert table.half == pytest.approx(1.96 * np.sqrt(0.5))
+
+
 # -- clouds
 
 
 @pytest.fixture(scope='module')
-def corridor() -> clouds.Corridor:
-    return clouds.corridor_of(clouds.SHOWN_WIDTH)
+def corridor() -> clouds.Straightened:
+    return clouds.straightened(clouds.SHOWN_WIDTH)
 
 
-def test_slices_have_equal_areas_from_start_to_goal(corridor: clouds.Corridor) -> None:
+def test_slices_have_equal_areas_from_start_to_goal(corridor: clouds.Straightened) -> None:
     free = corridor.way[np.isfinite(corridor.way)]
     counts = np.histogram(free, corridor.edges)[0]
     assert counts == pytest.approx(np.full(clouds.N_SLICES, counts.mean()), rel=0.02)

@@ -6,7 +6,7 @@ two means are apart.
 """
 
 from hnr_planner.core import GridSpace, plan, PlannerStatus
-from hnr_planner.maps import Spiral, spiral
+from hnr_planner.maps import Corridor, spiral
 import numpy as np
 from numpy.typing import NDArray
 import pytest
@@ -14,7 +14,7 @@ import pytest
 RUNS = 500
 
 
-def transitions(space: GridSpace, problem: Spiral, algorithm: str) -> NDArray[np.int64]:
+def transitions(space: GridSpace, problem: Corridor, algorithm: str) -> NDArray[np.int64]:
     counts = []
     for seed in range(RUNS):
         result = plan(

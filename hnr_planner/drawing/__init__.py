@@ -1,0 +1,56 @@
+"""
+Pictures of maps, samples and paths.
+
+Every ``draw_*`` function puts one thing on a matplotlib axes whose unit is the metre of the map
+frame; ``figure_of_plans`` and ``figure_of_samples`` put them together. Figures are made without
+pyplot, so nothing global is touched and no display is needed.
+"""
+
+from hnr_planner.drawing.figures import figure_of_plans, figure_of_samples, Plan, save
+from hnr_planner.drawing.maps import cell_kinds, draw_map, known_box
+from hnr_planner.drawing.searches import (
+    draw_ends,
+    draw_path,
+    draw_sample_cells,
+    draw_samples,
+    draw_tree,
+)
+from hnr_planner.drawing.style import (
+    AGES,
+    draw_title,
+    FAINT_INK,
+    FRAME,
+    GOAL,
+    INK,
+    KINDS,
+    OTHER_PATH,
+    PATH,
+    START,
+    UNKNOWN,
+)
+
+__all__ = [
+    'AGES',
+    'FAINT_INK',
+    'FRAME',
+    'GOAL',
+    'INK',
+    'KINDS',
+    'OTHER_PATH',
+    'PATH',
+    'START',
+    'UNKNOWN',
+    'Plan',
+    'cell_kinds',
+    'draw_ends',
+    'draw_map',
+    'draw_path',
+    'draw_sample_cells',
+    'draw_samples',
+    'draw_title',
+    'draw_tree',
+    'figure_of_plans',
+    'figure_of_samples',
+    'known_box',
+    'save',
+]
