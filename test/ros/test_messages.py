@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 import math
+from test.ros.harness import points_in, set_field
 
 from builtin_interfaces.msg import Time
 from hnr_planner.core import GridSpace, plan
@@ -18,7 +19,6 @@ from nav_msgs.msg import Path as PathMessage
 import numpy as np
 import pytest
 from rclpy.serialization import deserialize_message
-from sensor_msgs.msg import PointCloud2
 from std_msgs.msg import Header
 from visualization_msgs.msg import Marker, MarkerArray
 
@@ -31,11 +31,7 @@ def message(**changes: object) -> OccupancyGrid:
     """Return a good map message, with some fields changed."""
     result = message_from_grid(Grid(DATA, 0.05, (1.0, -2.0, 0.5), 'floor'), STAMP)
     for name, value in changes.items():
-        place = result
-        *parents, field = name.split('__')
-        for parent in parents:
-            place = getattr(place, parent)
-        setattr(place, field, value)
+        set_field(result, name.replace('__', '.'), value)
     return result
 
 
@@ -105,20 +101,6 @@ def report_on_a_map() -> PathReport:
     return PathReport(
         Outcome[result.status.name], '', request, result, snapshot=MapSnapshot(space, grid, 1)
     )
-
-
-def points_in(cloud: PointCloud2) -> np.ndarray:
-    """Return the points of a cloud by the description that it brings along."""
-    types = {5: 'i4', 6: 'u4', 7: 'f4'}  # the numbers that sensor_msgs/PointField defines
-    layout = np.dtype(
-        {
-            'names': [field.name for field in cloud.fields],
-            'formats': [types[field.datatype] for field in cloud.fields],
-            'offsets': [field.offset for field in cloud.fields],
-            'itemsize': cloud.point_step,
-        }
-    )
-    return np.frombuffer(cloud.data.tobytes(), dtype=layout)
 
 
 def test_cloud_holds_samples_and_parents_of_the_result() -> None:
