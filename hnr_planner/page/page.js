@@ -1,12 +1,12 @@
 // What can be switched and pressed, and how the page begins.
 
 const LAYER_NAMES = {
-  samples: 'samples', tree: 'tree', chord: 'newest chord', detours: 'path as found', path: 'path',
+  samples: 'samples', tree: 'tree', chord: 'chord', detours: 'path as found', path: 'path',
 };
 const LAYER_MARKS = {
-  samples: '<circle cx="5" cy="8" r="1.5" stroke-width="3"/><circle cx="16" cy="4" r="1.5" stroke-width="3"/>',
+  samples: '<path d="M5 8h0M16 4h0" stroke-width="5"/>',
   tree: '<path d="M1 10 11 3 21 9" stroke-width="1" opacity=".6"/>',
-  chord: '<path d="M0 6H22" stroke-width="1.5" opacity=".55"/><path d="M7 6H15" stroke-width="3.5"/>',
+  chord: '<path d="M0 6H22" opacity=".55"/><path d="M7 6H15" stroke-width="3.5"/>',
   detours: '<path d="M1 10 7 2 14 10 21 2" stroke-width="1.6" opacity=".75"/>',
   path: '<path d="M1 9 21 3" stroke-width="4"/>',
 };

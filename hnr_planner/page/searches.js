@@ -60,7 +60,8 @@ function caption() {
   }
   if (on.length === 1 && !isFound) return only.message;
   if (!isFound) return 'None of these searches has found a path.';
-  if (time === 1) return on.length === 1 ? outcome(only) : 'The thick lines are the paths.';
+  if (time === 1 && on.length === 1) return `The path: ${outcome(only)}.`;
+  if (time === 1) return 'The thick lines are the paths.';
   if (!data.simplify) return 'A path is found, and left as it is.';
   return 'A path is found. Points of it that see each other are joined by a straight line.';
 }
