@@ -15,7 +15,7 @@ setup(
     maintainer='The hnr_planner developers',
     maintainer_email='maintainers@hnr-planner.example',
     packages=find_packages(include=[package_name, f'{package_name}.*']),
-    package_data={package_name: ['page/page.*']},
+    package_data={package_name: ['page/*.css', 'page/*.html', 'page/*.js']},
     python_requires='>=3.11',
     # The lower bounds of what Ubuntu 24.04 has are that system's own releases.
     install_requires=[

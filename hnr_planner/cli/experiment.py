@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
+import sys
 import webbrowser
 
 from hnr_planner.cli.arguments import count
@@ -77,5 +78,5 @@ def _conduct(name: str, arguments: argparse.Namespace) -> None:
     figure = arguments.out / f'{name}.svg'
     print(figure.with_suffix('.md').read_text(encoding='utf-8'))
     print(f'figure      {figure}')
-    if arguments.show:
-        webbrowser.open(figure.resolve().as_uri())
+    if arguments.show and not webbrowser.open(figure.resolve().as_uri()):
+        print('there is no browser to show it in', file=sys.stderr)

@@ -5,8 +5,7 @@ from __future__ import annotations
 import argparse
 import json
 import math
-from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import Any, TYPE_CHECKING
 
 from hnr_planner.cli.arguments import (
     add_map_arguments,
@@ -124,7 +123,8 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
         '--html',
         type=page,
         metavar='FILE.html',
-        help='write a page that shows how the search unfolds, and those of the other algorithms',
+        help='write a page that shows how this search unfolds, and that of every other algorithm '
+        'for the same request',
     )
     parser.set_defaults(run=run)
 
@@ -136,29 +136,36 @@ def run(arguments: argparse.Namespace) -> int:
     occupancy, space = open_map(arguments)
     keep_map_files(arguments.map, arguments.plot, arguments.html)
     compile_kernels('paths')
-    result = plan(
-        space,
-        arguments.start,
-        arguments.goal,
-        algorithm=arguments.algorithm,
-        goal_radius=arguments.goal_radius,
-        time_limit=arguments.time_limit,
-        seed=arguments.seed,
-        simplify=arguments.simplify,
-        optimize_for=arguments.optimize_for,
-        alternatives=arguments.alternatives,
-        **({'clearance': arguments.clearance} if arguments.clearance else {}),
-    )
+    request = _request(arguments)
+    result = plan(space, **request)
     print(_json(result) if arguments.json else _summary(space, result))
     if arguments.plot:
         _draw(arguments, occupancy, space, result)
         if not arguments.json:
             print(f'picture     {arguments.plot}')
     if arguments.html:
-        _write_page(arguments, occupancy, space, result)
+        from hnr_planner.cli.plan_page import write_plan_page
+
+        write_plan_page(arguments, occupancy, space, request, result)
         if not arguments.json:
             print(f'page        {arguments.html}')
     return 0 if result.status is PlannerStatus.SOLVED else NO_PATH
+
+
+def _request(arguments: argparse.Namespace) -> dict[str, Any]:
+    """Return what ``plan`` takes besides the space."""
+    request = {
+        'start': arguments.start,
+        'goal': arguments.goal,
+        'algorithm': arguments.algorithm,
+        'goal_radius': arguments.goal_radius,
+        'time_limit': arguments.time_limit,
+        'seed': arguments.seed,
+        'simplify': arguments.simplify,
+        'optimize_for': arguments.optimize_for,
+        'alternatives': arguments.alternatives,
+    }
+    return request | ({'clearance': arguments.clearance} if arguments.clearance else {})
 
 
 def _json(result: PlanResult) -> str:
@@ -224,44 +231,3 @@ def _draw(
     )
     figure = drawing.figure_of_plans(occupancy, [shown], blocked=space.blocked)
     drawing.save(figure, arguments.plot)
-
-
-def _write_page(
-    arguments: argparse.Namespace, occupancy: OccupancyMap, space: GridSpace, result: PlanResult
-) -> None:
-    """Write the page: this search and those of the other algorithms, for the same request."""
-    from hnr_planner.core import plan
-    from hnr_planner.page import Shown, write_page
-
-    def search(algorithm: str, simplify: bool) -> PlanResult:
-        return plan(
-            space,
-            arguments.start,
-            arguments.goal,
-            algorithm=algorithm,
-            goal_radius=arguments.goal_radius,
-            time_limit=arguments.time_limit,
-            seed=result.seed,
-            simplify=simplify,
-        )
-
-    searches = [
-        Shown(
-            found=search(name, False),
-            result=result if name == result.planner else search(name, True),
-            asked=name == result.planner,
-        )
-        for name in ALGORITHM_NAMES
-        if name != 'auto'
-    ]
-    write_page(
-        arguments.html,
-        Path(arguments.map).stem,
-        occupancy,
-        space,
-        arguments.start,
-        arguments.goal,
-        searches,
-        goal_radius=arguments.goal_radius,
-        robot_radius=arguments.robot_radius,
-    )

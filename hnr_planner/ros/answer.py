@@ -1,8 +1,9 @@
 """
 What turns a request into an answer, without ROS: `answer(request, settings, newest_map, cancel)`.
 
-Whatever happens, the caller gets a `Report`: the name of the outcome and why in words. A request
-is checked, planned on the newest map, and the path is held against the map that is newest then.
+Whatever happens, the caller gets a `PathReport`: the name of the outcome and why in words. A
+request is checked, planned on the newest map, and the path is held against the map that is newest
+then.
 """
 
 from collections.abc import Callable
@@ -23,7 +24,8 @@ from hnr_planner.ros.legs import joined
 from hnr_planner.ros.map_store import MapSnapshot
 from hnr_planner.ros.outcomes import Outcome, Refusal
 from hnr_planner.ros.path_validity import first_blocked_pose
-from hnr_planner.ros.requests import check_request, Pose, Report, Request
+from hnr_planner.ros.reports import PathReport
+from hnr_planner.ros.requests import check_request, Pose, Request
 from hnr_planner.ros.settings import Settings
 from hnr_planner.ros.trajectory_messages import as_path
 import numpy as np
@@ -51,7 +53,7 @@ def answer(
     newest_map: NewestMap,
     cancel: threading.Event,
     to_frame: ToFrame = only_same_frame,
-) -> Report:
+) -> PathReport:
     """
     Return the answer to `request`.
 
@@ -78,7 +80,7 @@ def answer(
         job = _Job(settings, newest_map, cancel, to_frame, began + settings.time_limit)
         report = job.plan_for_newest_map(request, snapshot)
     except Refusal as refusal:
-        report = Report(refusal.outcome, refusal.why, request, 0.0, snapshot)
+        report = PathReport(refusal.outcome, refusal.why, request, snapshot=snapshot)
     return replace(report, elapsed=time.monotonic() - began)
 
 
@@ -92,7 +94,7 @@ class _Job:
     to_frame: ToFrame
     deadline: float
 
-    def plan_for_newest_map(self, request: Request, snapshot: MapSnapshot) -> Report:
+    def plan_for_newest_map(self, request: Request, snapshot: MapSnapshot) -> PathReport:
         """Plan on `snapshot`, and again for as long as a newer map blocks the path just found."""
         first = snapshot
         while True:
@@ -129,11 +131,11 @@ class _Job:
         start, *via, goal = (bring(name, pose) for name, pose in request.named_poses)
         return replace(request, start=start, via=tuple(via), goal=goal)
 
-    def _plan_legs(self, request: Request, snapshot: MapSnapshot) -> Report:
+    def _plan_legs(self, request: Request, snapshot: MapSnapshot) -> PathReport:
         """Plan on one map, from each pose to the next; a leg that fails ends it, in its name."""
         if not request.via:
             return self._plan(request, snapshot)
-        legs: list[Report] = []
+        legs: list[PathReport] = []
         start, ends = request.start, (*request.via, request.goal)
         for number, end in enumerate(ends, 1):
             leg = self._plan(replace(request, start=start, via=(), goal=end), snapshot)
@@ -146,7 +148,7 @@ class _Job:
         why = '; '.join(f'leg {number}: {leg.why}' for number, leg in enumerate(legs, 1))
         return replace(legs[0], why=why, request=request, result=result)
 
-    def _plan(self, request: Request, snapshot: MapSnapshot) -> Report:
+    def _plan(self, request: Request, snapshot: MapSnapshot) -> PathReport:
         """
         Plan on one map.
 
@@ -167,7 +169,7 @@ class _Job:
                 result = _led_out(result, start, escape)
                 why += f'; the start was led out by {escape:.4g} m because {blocked}'
         outcome = Outcome[result.status.name]
-        return Report(outcome, why, request, 0.0, snapshot, result, escape=escape)
+        return PathReport(outcome, why, request, result, escape=escape, snapshot=snapshot)
 
     def _plan_from(
         self, start: tuple[float, float] | np.ndarray, request: Request, snapshot: MapSnapshot
@@ -223,7 +225,7 @@ def _led_out(result: PlanResult, start: tuple[float, float], escape: float) -> P
     return replace(result, path=path, length=result.length + escape)
 
 
-def _still_holds(report: Report, newer: MapSnapshot) -> bool:
+def _still_holds(report: PathReport, newer: MapSnapshot) -> bool:
     """Return whether a path found on one map is a path on a newer one."""
     if first_blocked_pose(report.free_path, report.frame, newer) is not None:
         return False

@@ -5,7 +5,8 @@ from typing import NamedTuple
 
 from geometry_msgs.msg import Point, Pose, Vector3
 from hnr_planner.core import PlanResult
-from hnr_planner.ros.requests import Report, Request
+from hnr_planner.ros.reports import PathReport
+from hnr_planner.ros.requests import Request
 from hnr_planner.ros.sample_cap import shown_samples
 import numpy as np
 from numpy.typing import NDArray
@@ -23,7 +24,7 @@ START = ColorRGBA(r=0.10, g=0.65, b=0.25, a=1.0)
 GOAL = ColorRGBA(r=0.75, g=0.10, b=0.55, a=1.0)
 
 
-def serialised_markers(report: Report, header: Header) -> bytes:
+def serialised_markers(report: PathReport, header: Header) -> bytes:
     """
     Return samples, tree or chain, path, start and goal of a solved request, a MarkerArray.
 

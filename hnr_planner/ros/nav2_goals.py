@@ -11,7 +11,8 @@ from geometry_msgs.msg import PoseStamped
 from hnr_planner.core import ALGORITHMS
 from hnr_planner.ros.outcomes import Outcome
 from hnr_planner.ros.path_messages import pose_from_message
-from hnr_planner.ros.requests import NOWHERE, Pose, Report, Request
+from hnr_planner.ros.reports import PathReport
+from hnr_planner.ros.requests import NOWHERE, Pose, Request
 from hnr_planner.ros.settings import Settings
 import numpy as np
 from numpy.typing import NDArray
@@ -59,7 +60,7 @@ def robot_pose(settings: Settings) -> Pose:
     return Pose((0.0, 0.0, 0.0), frame=settings.robot_base_frame)
 
 
-def error_of(report: Report) -> str:
+def error_of(report: PathReport) -> str:
     """Return the name of Nav2's error code for how a request ended."""
     request = report.request
     if request.goal is NOWHERE:
@@ -80,6 +81,6 @@ def from_robot_on(points: NDArray[np.float64], robot: Pose) -> int:
     return int(np.argmin(np.nan_to_num(np.hypot(away[:, 0], away[:, 1]), nan=np.inf)))
 
 
-def _is_outside(pose: Pose, report: Report) -> bool:
+def _is_outside(pose: Pose, report: PathReport) -> bool:
     """Return whether a pose in the map's frame lies outside the map."""
     return report.snapshot is not None and not report.snapshot.space.reaches_to(pose.point)

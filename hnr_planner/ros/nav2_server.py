@@ -16,8 +16,8 @@ from hnr_planner.ros.answer import NewestMap, ToFrame
 from hnr_planner.ros.nav2_goals import error_of, from_robot_on, request_of, robot_pose
 from hnr_planner.ros.outcomes import Refusal
 from hnr_planner.ros.path_validity import blocked_poses
+from hnr_planner.ros.reports import PathReport
 from hnr_planner.ros.request_server import RequestServer
-from hnr_planner.ros.requests import Report
 from hnr_planner.ros.settings import Settings
 from nav_msgs.msg import Path
 import numpy as np
@@ -199,7 +199,7 @@ class _Action:
             handle.abort()
         return self._result(report, path, goal.preempted)
 
-    def _result(self, report: Report, path: Path, preempted: bool) -> Any:
+    def _result(self, report: PathReport, path: Path, preempted: bool) -> Any:
         """Return the result of a goal."""
         result = self._kind.Result(path=path, planning_time=_duration(report.elapsed))
         result.error_code = getattr(result, error_of(report))

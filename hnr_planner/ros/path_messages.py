@@ -4,7 +4,8 @@ from geometry_msgs.msg import PoseStamped
 from hnr_planner.ros.map_messages import as_written
 from hnr_planner.ros.orientations import yaw_of
 from hnr_planner.ros.poses import poses_along
-from hnr_planner.ros.requests import Pose, Report, Request
+from hnr_planner.ros.reports import PathReport
+from hnr_planner.ros.requests import Pose, Request
 from nav_msgs.msg import Path
 from nav_msgs.srv import GetPlan
 import numpy as np
@@ -36,7 +37,7 @@ def pose_from_message(message: PoseStamped) -> Pose:
     )
 
 
-def pose_rows(report: Report, spacing: float) -> NDArray[np.float64]:
+def pose_rows(report: PathReport, spacing: float) -> NDArray[np.float64]:
     """
     Return the poses of a report's path as rows (n, 7): x, y, z and the quaternion x, y, z, w.
 
@@ -82,7 +83,7 @@ def serialised_path(rows: NDArray[np.float64], header: Header) -> bytes:
     return b''.join([none[:-4], count, one[n_none:], others.tobytes()])
 
 
-def _spacing(report: Report, spacing: float) -> float:
+def _spacing(report: PathReport, spacing: float) -> float:
     """Return the distance meant by the parameter: a negative one is the map's resolution."""
     if spacing < 0.0 and report.snapshot is not None:
         return report.snapshot.grid.resolution

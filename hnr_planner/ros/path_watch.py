@@ -9,7 +9,7 @@ from hnr_planner.ros.map_store import MapSnapshot
 from hnr_planner.ros.outcomes import Outcome, Refusal
 from hnr_planner.ros.path_validity import first_blocked_pose, PlanarPose
 from hnr_planner.ros.publications import latched, Publications
-from hnr_planner.ros.requests import Report
+from hnr_planner.ros.reports import PathReport
 from rclpy.node import Node
 from std_msgs.msg import Bool
 
@@ -41,10 +41,10 @@ class PathWatch:
         self._newest_map = newest_map
         self._publisher = node.create_publisher(Bool, f'~/{TOPIC}', latched(1))
         self._one_at_a_time = threading.Lock()
-        self._report: Report | None = None
+        self._report: PathReport | None = None
         self._valid = False
 
-    def follow(self, report: Report) -> None:
+    def follow(self, report: PathReport) -> None:
         """Watch the path of `report` from now on, none after a failure."""
         with self._one_at_a_time:
             self._report = report if report.solved else None
@@ -66,7 +66,7 @@ class PathWatch:
                 with suppress(Refusal):
                     self._compare(self._report, self._newest_map())
 
-    def _compare(self, report: Report, newest: MapSnapshot) -> None:
+    def _compare(self, report: PathReport, newest: MapSnapshot) -> None:
         if newest is report.snapshot and self._valid:
             return
         blocked = first_blocked_pose(report.free_path, report.frame, newest)
@@ -78,7 +78,7 @@ class PathWatch:
         else:
             self._announce(report, blocked, newest)
 
-    def _announce(self, report: Report, blocked: PlanarPose, newest: MapSnapshot) -> None:
+    def _announce(self, report: PathReport, blocked: PlanarPose, newest: MapSnapshot) -> None:
         """Say where a map blocks the path."""
         why = f'a newer map blocks the last path at {blocked}'
         self._logger.warning(f'{TOPIC}: {why}')

@@ -1,31 +1,20 @@
 """Everything that is told about a request once it is answered, by a thread of its own."""
 
 from collections import deque
-from dataclasses import dataclass
+from itertools import chain
 import queue
 import threading
 
 from builtin_interfaces.msg import Time as TimeMessage
 from diagnostic_msgs.msg import DiagnosticArray
-from hnr_planner.ros.marker_messages import serialised_markers
 from hnr_planner.ros.outcome_messages import outcome_message
-from hnr_planner.ros.path_messages import serialised_path
-from hnr_planner.ros.requests import Report, Request
-from hnr_planner.ros.sample_messages import draws_message, samples_message
-from hnr_planner.ros.sampling import SampleReport
-from hnr_planner.ros.trajectory_messages import trajectory_message
-from nav_msgs.msg import Path
-import numpy as np
-from numpy.typing import NDArray
+from hnr_planner.ros.reports import PathReport
+from hnr_planner.ros.results import Result, TOPICS
 from rclpy.clock import Clock
 from rclpy.duration import Duration
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.time import Time
-from sensor_msgs.msg import PointCloud2
-from std_msgs.msg import Header
-from trajectory_msgs.msg import MultiDOFJointTrajectory
-from visualization_msgs.msg import MarkerArray
 
 OUTCOMES_KEPT = 100
 LONGEST_DELIVERY = Duration(seconds=0.2)
@@ -45,56 +34,6 @@ def latched(depth: int) -> QoSProfile:
     )
 
 
-@dataclass(frozen=True, eq=False)
-class Result:
-    """
-    What is to be told about one request.
-
-    Parameters
-    ----------
-    caller : str
-        Service, action or topic that the request came by.
-    report : Report or SampleReport
-        How it ended.
-    header : Header
-        Header of all messages; the stamp is still to be set.
-
-    """
-
-    caller: str
-    report: Report | SampleReport
-    header: Header
-
-
-@dataclass(frozen=True, eq=False)
-class PathResult(Result):
-    """
-    What is to be told about a request for a path.
-
-    Parameters
-    ----------
-    request : Request
-        What was asked for, as it arrived.
-    poses : (n, 7)
-        Its path, as `pose_rows` gives it.
-    samples_max : int
-        Most samples to show.
-
-    """
-
-    report: Report
-    request: Request
-    poses: NDArray[np.float64]
-    samples_max: int
-
-
-@dataclass(frozen=True, eq=False)
-class DrawsResult(Result):
-    """What is to be told about a request for draws."""
-
-    report: SampleReport
-
-
 class Publications:
     """
     Logs and publishes how each request ended, in the order of the stamps.
@@ -109,12 +48,10 @@ class Publications:
         self._logger = node.get_logger()
         self._stamps = _Stamps(node.get_clock())
         self._outcome = node.create_publisher(DiagnosticArray, '~/outcome', latched(OUTCOMES_KEPT))
-        self._path = node.create_publisher(Path, '~/path', latched(1))
-        self._trajectory = node.create_publisher(
-            MultiDOFJointTrajectory, '~/trajectory', latched(1)
-        )
-        self._samples = node.create_publisher(PointCloud2, '~/samples', latched(1))
-        self._markers = node.create_publisher(MarkerArray, '~/markers', latched(1))
+        self._publishers = {
+            topic: node.create_publisher(kind, f'~/{topic}', latched(1))
+            for topic, kind in TOPICS.items()
+        }
         self._pictures = True
         self._in_order = threading.Lock()
         self._answering = _Answering()
@@ -137,7 +74,7 @@ class Publications:
             self._answering.sent = None
             self._wake.put(True)
 
-    def announce(self, report: Report, name: str) -> None:
+    def announce(self, report: PathReport, name: str) -> None:
         """Publish an outcome that no request asked for."""
         with self._in_order:
             self._outcome.publish(outcome_message(report, name, self._stamps.later()))
@@ -150,13 +87,7 @@ class Publications:
         """Publish what still waits, and end the thread once subscribers have it."""
         self._wake.put(False)
         self._thread.join()
-        for publisher in (
-            self._outcome,
-            self._path,
-            self._trajectory,
-            self._samples,
-            self._markers,
-        ):
+        for publisher in (self._outcome, *self._publishers.values()):
             publisher.wait_for_all_acked(LONGEST_DELIVERY)
 
     def _publish_all(self) -> None:
@@ -177,10 +108,8 @@ class Publications:
     def _log(self, result: Result) -> None:
         """Say in one line how a request ended."""
         caller, report = result.caller, result.report
-        if isinstance(result, PathResult) and result.request.omits_start:
-            self._logger.info(
-                f'{caller}: the start is (0, 0) in no frame, as if left out: taken literally'
-            )
+        if result.remark:
+            self._logger.info(f'{caller}: {result.remark}')
         text = f'{caller}: {report.outcome.name} after {report.elapsed:.3f} s: {report.why}'
         if report.outcome.is_success:
             self._logger.info(text)
@@ -190,15 +119,11 @@ class Publications:
     def _publish(self, result: Result) -> None:
         header, name = result.header, f'{self._name}/{result.caller}'
         self._outcome.publish(outcome_message(result.report, name, header.stamp))
-        if isinstance(result, DrawsResult):
-            self._samples.publish(draws_message(result.report, header))
-        elif isinstance(result, PathResult):
-            self._path.publish(serialised_path(result.poses, header))
-            self._trajectory.publish(trajectory_message(result.report, header))
-            if self._pictures and len(self._waiting) <= LONGEST_BACKLOG:
-                samples = result.report.result
-                self._samples.publish(samples_message(samples, result.samples_max, header))
-                self._markers.publish(serialised_markers(result.report, header))
+        messages = result.messages()
+        if self._pictures and len(self._waiting) <= LONGEST_BACKLOG:
+            messages = chain(messages, result.pictures())
+        for topic, message in messages:
+            self._publishers[topic].publish(message)
 
 
 class _Answering(threading.local):

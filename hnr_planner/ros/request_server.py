@@ -10,9 +10,11 @@ from hnr_planner.ros.answer import answer, NewestMap, ToFrame
 from hnr_planner.ros.outcomes import Outcome, Refusal
 from hnr_planner.ros.path_messages import path_message, pose_rows
 from hnr_planner.ros.path_watch import PathWatch
-from hnr_planner.ros.publications import DrawsResult, PathResult, Publications
-from hnr_planner.ros.requests import Report, Request
-from hnr_planner.ros.sampling import draw, SampleReport
+from hnr_planner.ros.publications import Publications
+from hnr_planner.ros.reports import DrawsReport, PathReport, Report
+from hnr_planner.ros.requests import Request
+from hnr_planner.ros.results import DrawsResult, PathResult
+from hnr_planner.ros.sampling import draw
 from hnr_planner.ros.searches import RunningSearches
 from hnr_planner.ros.settings import Settings
 from hnr_planner.ros.statistics import Statistics
@@ -20,20 +22,20 @@ from nav_msgs.msg import Path
 from rclpy.node import Node
 from std_msgs.msg import Header
 
-Some = TypeVar('Some', Report, SampleReport)
+Some = TypeVar('Some', bound=Report)
 
 
 class Answer(NamedTuple):
     """What came of a request, and its path as a message: stamped, empty after a failure."""
 
-    report: Report
+    report: PathReport
     path: Path
 
 
 class Drawn(NamedTuple):
     """What came of a request for draws, and the stamp of all that is published about it."""
 
-    report: SampleReport
+    report: DrawsReport
     stamp: Time
 
 
@@ -89,7 +91,7 @@ class RequestServer:
         report = self._counted(
             cancel,
             lambda: answer(request, settings, self._newest_map, cancel, self._to_frame),
-            lambda refusal: Report(refusal.outcome, refusal.why, request, elapsed=0.0),
+            lambda refusal: PathReport(refusal.outcome, refusal.why, request),
         )
         poses, header = pose_rows(report, settings.pose_spacing), Header(frame_id=report.frame)
         path = path_message(poses, header)
@@ -105,7 +107,7 @@ class RequestServer:
         report = self._counted(
             cancel,
             lambda: draw(settings, self._newest_map, cancel),
-            lambda refusal: SampleReport(refusal.outcome, refusal.why, settings),
+            lambda refusal: DrawsReport(refusal.outcome, refusal.why, settings),
         )
         header = Header(frame_id=report.frame)
         self._publications.hand_over(DrawsResult(caller, report, header))

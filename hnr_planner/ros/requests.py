@@ -1,15 +1,10 @@
-"""What is asked of the planner, and what it answers: data, without ROS."""
+"""What is asked of the planner: data, without ROS."""
 
 from dataclasses import dataclass
 import math
 
-from hnr_planner.core import PlanResult
-from hnr_planner.ros.map_store import MapSnapshot
 from hnr_planner.ros.orientations import LEVEL, normalised, Quaternion
 from hnr_planner.ros.outcomes import Outcome, Refusal
-from hnr_planner.ros.path_validity import PlanarPose
-import numpy as np
-from numpy.typing import NDArray
 
 
 @dataclass(frozen=True)
@@ -69,85 +64,6 @@ class Request:
     def omits_start(self) -> bool:
         """Return whether the start looks like one that was left out."""
         return self.start.frame == '' and self.start.point == (0.0, 0.0)
-
-
-@dataclass(frozen=True)
-class Report:
-    """
-    The answer to a request.
-
-    Parameters
-    ----------
-    outcome : Outcome
-        The name of what happened.
-    why : str
-        The same in words, with the values.
-    request : Request
-        What was asked for; in the map's frame once something was planned.
-    elapsed : float
-        Time from the request to this report [s].
-    snapshot : MapSnapshot, optional
-        The map that the answer holds for; None when there was none.
-    result : PlanResult, optional
-        What the planner returned; None when nothing was planned.
-    clearance : float
-        Smallest distance between the path and an obstacle [m]; NaN without a path.
-    escape : float
-        Length of the first segment of the path, where that leads out of a start that is not free
-        [m]; 0 where the start is free.
-    blocked : PlanarPose, optional
-        Where a path found before is blocked now.
-
-    """
-
-    outcome: Outcome
-    why: str
-    request: Request
-    elapsed: float
-    snapshot: MapSnapshot | None = None
-    result: PlanResult | None = None
-    clearance: float = math.nan
-    escape: float = 0.0
-    blocked: PlanarPose | None = None
-
-    @property
-    def solved(self) -> bool:
-        """Return whether there is a path."""
-        return self.outcome is Outcome.SOLVED
-
-    @property
-    def searched(self) -> bool:
-        """Return whether there was anything to search for, solved or not."""
-        return self.result is not None and len(self.result.samples) > 0
-
-    @property
-    def path(self) -> NDArray[np.float64]:
-        """Return the vertices of the path, an array (m, 2); none unless solved."""
-        if self.solved and self.result is not None:
-            return self.result.path
-        return np.empty((0, 2))
-
-    @property
-    def free_path(self) -> NDArray[np.float64]:
-        """Return the part of the path that is free: all but the way out of a blocked start."""
-        return self.path[1:] if self.escape > 0.0 else self.path
-
-    @property
-    def frame(self) -> str:
-        """Return the map's frame, empty without a map."""
-        return '' if self.snapshot is None else self.snapshot.frame
-
-    @property
-    def goal_orientation(self) -> Quaternion:
-        """Return the orientation asked for at the goal, with norm 1."""
-        return normalised(self.request.goal.orientation) or LEVEL
-
-    @property
-    def offset(self) -> float:
-        """Return how far the path ends from the goal asked for [m]; NaN without a path."""
-        if not self.solved:
-            return math.nan
-        return float(math.dist(self.path[-1], self.request.goal.point))
 
 
 def check_request(request: Request) -> None:

@@ -3,8 +3,8 @@
 import array
 
 from hnr_planner.core import PlanResult
+from hnr_planner.ros.reports import DrawsReport
 from hnr_planner.ros.sample_cap import shown_samples
-from hnr_planner.ros.sampling import SampleReport
 import numpy as np
 from numpy.typing import NDArray
 from sensor_msgs.msg import PointCloud2, PointField
@@ -33,7 +33,7 @@ def samples_message(result: PlanResult | None, limit: int, header: Header) -> Po
     return _cloud(result.samples[shown.rows], shown.parents, header)
 
 
-def draws_message(report: SampleReport, header: Header) -> PointCloud2:
+def draws_message(report: DrawsReport, header: Header) -> PointCloud2:
     """Return all draws; `parent` is the `index` of the one that a draw is a step away from."""
     return _cloud(report.points, report.parents, header)
 

@@ -12,66 +12,13 @@ import time
 from hnr_planner.core import Cancelled, FreeSpaceDraws, sample_free_space, SpaceError, StuckError
 from hnr_planner.ros.map_store import MapSnapshot
 from hnr_planner.ros.outcomes import Outcome, Refusal
+from hnr_planner.ros.reports import DrawsReport
 from hnr_planner.ros.settings import Settings
-import numpy as np
-from numpy.typing import NDArray
-
-
-@dataclass(frozen=True)
-class SampleReport:
-    """
-    The answer to a request for draws.
-
-    Parameters
-    ----------
-    outcome : Outcome
-        The name of what happened.
-    why : str
-        The same in words, with the values.
-    settings : Settings
-        The parameters that said what to draw.
-    elapsed : float
-        Time from the request to this report [s].
-    snapshot : MapSnapshot, optional
-        The map that was drawn from; None when there was none.
-    draws : FreeSpaceDraws, optional
-        One chain of them; None after a failure.
-
-    """
-
-    outcome: Outcome
-    why: str
-    settings: Settings
-    elapsed: float = 0.0
-    snapshot: MapSnapshot | None = None
-    draws: FreeSpaceDraws | None = None
-
-    @property
-    def frame(self) -> str:
-        """Return the map's frame, empty without a map."""
-        return '' if self.snapshot is None else self.snapshot.frame
-
-    @property
-    def points(self) -> NDArray[np.float64]:
-        """Return the draws (n, 2); none after a failure."""
-        return np.empty((0, 2)) if self.draws is None else self.draws.points[0]
-
-    @property
-    def n_parts(self) -> int:
-        """Return how many connected parts of the free space the draws lie in."""
-        return 0 if self.draws is None else len(np.unique(self.draws.parts))
-
-    @property
-    def parents(self) -> NDArray[np.intp]:
-        """Return the index (n,) of the draw that each is one step away from; -1 for none."""
-        if self.draws is None or self.settings.sample_thin > 1:
-            return np.full(len(self.points), -1)
-        return self.draws.previous[0]
 
 
 def draw(
     settings: Settings, newest_map: Callable[[], MapSnapshot], cancel: threading.Event
-) -> SampleReport:
+) -> DrawsReport:
     """
     Return uniform draws of all free space of the newest map, or why there are none.
 
@@ -91,9 +38,9 @@ def draw(
         snapshot = newest_map()
         draws = _draw(settings, snapshot, _Ending(cancel, began + settings.time_limit))
         why = f'{_asked_for(settings)} by {settings.sample_walk}, seed {draws.seed}'
-        report = SampleReport(Outcome.SAMPLED, why, settings, 0.0, snapshot, draws)
+        report = DrawsReport(Outcome.SAMPLED, why, settings, draws, snapshot=snapshot)
     except Refusal as refusal:
-        report = SampleReport(refusal.outcome, refusal.why, settings, 0.0, snapshot)
+        report = DrawsReport(refusal.outcome, refusal.why, settings, snapshot=snapshot)
     return replace(report, elapsed=time.monotonic() - began)
 
 

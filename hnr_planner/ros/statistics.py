@@ -5,8 +5,7 @@ from dataclasses import dataclass
 import threading
 
 from hnr_planner.ros.outcomes import Outcome
-from hnr_planner.ros.requests import Report
-from hnr_planner.ros.sampling import SampleReport
+from hnr_planner.ros.reports import Report
 import numpy as np
 
 REMEMBERED_TIMES = 1000
@@ -34,11 +33,11 @@ class Statistics:
         self._times: deque[float] = deque(maxlen=REMEMBERED_TIMES)
         self._lock = threading.Lock()
 
-    def count(self, report: Report | SampleReport) -> None:
+    def count(self, report: Report) -> None:
         """Add one report."""
         with self._lock:
             self._outcomes[report.outcome] += 1
-            if isinstance(report, Report) and report.searched:
+            if report.searched:
                 self._times.append(report.elapsed)
 
     def summary(self) -> Summary:

@@ -6,7 +6,7 @@ from builtin_interfaces.msg import Duration
 from geometry_msgs.msg import Quaternion, Transform, Twist, Vector3
 from hnr_planner.core.spaces.space import Space
 from hnr_planner.core.systems import Trajectory
-from hnr_planner.ros.requests import Report
+from hnr_planner.ros.reports import PathReport
 import numpy as np
 from numpy.typing import NDArray
 from std_msgs.msg import Header
@@ -20,7 +20,7 @@ HALVINGS = 16
 """Of a step, at most, until what is straight between its points is free as well."""
 
 
-def trajectory_message(report: Report, header: Header) -> MultiDOFJointTrajectory:
+def trajectory_message(report: PathReport, header: Header) -> MultiDOFJointTrajectory:
     """
     Return the trajectory of a report; it has no points where there is none.
 

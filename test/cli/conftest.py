@@ -28,11 +28,12 @@ class Ran(NamedTuple):
     err: str
 
 
-def run_process(*arguments: object, cwd: Path | None = None) -> Ran:
+def run_process(*arguments: object, cwd: Path | None = None, **environment: str) -> Ran:
     """Run ``python -m hnr_planner`` as a user does, in a process of its own."""
     done = subprocess.run(
         [sys.executable, '-m', 'hnr_planner', *map(str, arguments)],
         cwd=cwd or ROOT,
+        env={**os.environ, **environment},
         capture_output=True,
         text=True,
         timeout=TIME_LIMIT,

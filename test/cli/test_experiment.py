@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from pathlib import Path
 import sys
-from test.cli.conftest import Ran
+from test.cli.conftest import Ran, run_process
 
 from hnr_planner.cli import experiment
 from hnr_planner.experiments import NAMES
@@ -30,6 +30,13 @@ def test_it_writes_prints_and_shows(
     assert '| 1.2, RRT |' in ran.out
     assert (out / 'clouds.csv').read_text().startswith('width,algorithm,seed,transitions,')
     assert shown.read_text() == (out / 'clouds.svg').as_uri()
+
+
+def test_without_a_browser_it_says_so(tmp_path: Path) -> None:
+    command = ['experiment', 'clouds', '--runs', 1, '--out', tmp_path, '--jobs', 1, '--show']
+    ran = run_process(*command, BROWSER='/nonexistent', PATH='', DISPLAY='')
+    assert ran.code == 0
+    assert ran.err.endswith('there is no browser to show it in\n')
 
 
 def test_an_unknown_name_is_refused(run: Callable[..., Ran], tmp_path: Path) -> None:

@@ -13,9 +13,12 @@ import json
 from pathlib import Path
 import re
 import shutil
-from test.cli.conftest import OFFICE, Ran
+from test.cli.conftest import at, OFFICE, Ran
 from typing import Any
 
+from hnr_planner.core import GridSpace, plan
+from hnr_planner.maps import load_map, OccupancyMap
+from hnr_planner.page.found import found_path
 from matplotlib.colors import to_rgb
 import numpy as np
 from PIL import Image
@@ -41,6 +44,7 @@ SHOWN = {
     'rrt_connect': '#CC79A7',
 }
 PATIENCE = 60.0
+PHONE = {'width': 390, 'height': 844, 'deviceScaleFactor': 2, 'mobile': True}
 
 
 @pytest.fixture(scope='module')
@@ -57,6 +61,17 @@ def browser() -> Iterator[Any]:
     driver = webdriver.Chrome(options=options, service=Service(programs[1]))
     yield driver
     driver.quit()
+
+
+def data_of(file: Path) -> dict[str, Any]:
+    """Return the data that a page holds."""
+    (data,) = re.findall('id="data">(.*?)</script>', file.read_text())
+    return dict(json.loads(data))
+
+
+def through_the_door(rooms: OccupancyMap) -> list[object]:
+    """Return a start in one room and a goal in the other."""
+    return ['--start', *at(rooms, 5, 5), '--goal', *at(rooms, 8, 75)]
 
 
 @pytest.fixture
@@ -91,6 +106,10 @@ class Page:
 
     def time(self) -> int:
         return int(self.find('#time').get_property('value'))
+
+    def press(self, *keys: str) -> None:
+        """Press keys, whatever has the focus."""
+        ActionChains(self.browser).send_keys(*keys).perform()
 
     def wait(self, until: Callable[[], bool]) -> None:
         WebDriverWait(self.browser, PATIENCE, 0.05).until(lambda _: until())
@@ -148,13 +167,14 @@ def test_a_script_that_fails_is_noticed(page: Page, tmp_path: Path) -> None:
 
 
 def test_it_holds_the_search_that_was_asked_for(page: Page) -> None:
-    data = json.loads(page.find('#data').get_property('textContent'))
+    data = data_of(page.file)
     assert {search['name']: search['colour'] for search in data['searches']} == SHOWN
     (asked,) = (search for search in data['searches'] if search['asked'])
     assert page.result is not None
     assert asked['name'] == page.result['algorithm'] == 'hit_and_run'
     assert asked['path'] == page.result['path']
     assert asked['iterations'] == page.result['iterations']
+    assert asked['elapsed'] == page.result['elapsed']  # the very same search
     samples = np.frombuffer(base64.b64decode(asked['samples']), '<f4').reshape(-1, 2)
     # The chain of the walk is the path as it was found, up to the goal that its last one sees.
     assert samples == pytest.approx(np.array(asked['found'])[:-1], rel=1e-6)
@@ -165,6 +185,63 @@ def test_it_holds_the_search_that_was_asked_for(page: Page) -> None:
         part = (between * along).sum(axis=1) / (along * along).sum(axis=1)
         assert ((part > 0) & (part < 1)).all()
         assert part[:, np.newaxis] * along == pytest.approx(between, abs=1e-4)
+
+
+@pytest.mark.parametrize(
+    'settings',
+    [['--alternatives', 2, '--goal-radius', 0.5], ['--no-simplify'], ['--clearance', 0.2]],
+    ids=lambda settings: settings[0],
+)
+def test_every_algorithm_answers_as_the_command_does_with_all_settings_that_it_takes(
+    run: Callable[..., Ran],
+    rooms: OccupancyMap,
+    rooms_file: Path,
+    tmp_path: Path,
+    settings: list[object],
+) -> None:
+    file = tmp_path / 'page.html'
+    command = ['plan', rooms_file, *through_the_door(rooms), '--seed', 4, '--time-limit', 20]
+    assert run(*command, *settings, '--html', file).code == 0
+    shown = {search['name']: search for search in data_of(file)['searches']}
+    assert shown.keys() == SHOWN.keys()
+    for name, search in shown.items():
+        takes = settings[0] != '--clearance' or name == 'hit_and_run_connect'
+        assert search['notes'] == ([] if takes else ['keeps no clearance'])
+        alone = [*command, '--algorithm', name, *(settings if takes else []), '--json']
+        result = json.loads(run(*alone).out)
+        assert [search['path'], *search['others']] == result['paths']
+        assert search['iterations'] == result['iterations']
+        assert search['found'][0] == search['path'][0]
+
+
+def test_every_algorithm_looks_for_shorter_paths(
+    run: Callable[..., Ran], rooms: OccupancyMap, rooms_file: Path, tmp_path: Path
+) -> None:
+    def searches(*settings: object) -> dict[str, dict[str, Any]]:
+        file = tmp_path / 'page.html'
+        command = ['plan', rooms_file, *through_the_door(rooms), '--seed', 4, '--time-limit', 20]
+        assert run(*command, *settings, '--html', file).code == 0
+        return {search['name']: search for search in data_of(file)['searches']}
+
+    plain = searches()
+    for name, search in searches('--optimize-for', 0.1).items():
+        assert search['iterations'] > plain[name]['iterations']
+        assert search['length'] <= plain[name]['length']
+
+
+@pytest.mark.parametrize('goal_radius', [0.0, 1.0])
+@pytest.mark.parametrize('algorithm', SHOWN)
+def test_the_path_as_found_is_read_off_the_samples(algorithm: str, goal_radius: float) -> None:
+    office = load_map(OFFICE)
+    space = GridSpace.from_occupancy(office.data, office.resolution, office.origin)
+    request = {'algorithm': algorithm, 'goal_radius': goal_radius, 'time_limit': 60.0}
+    goal = (34.0, 5.0)
+    for seed in range(10):
+        shortened, found = (
+            plan(space, (3.0, 22.0), goal, simplify=simplify, seed=seed, **request)
+            for simplify in (True, False)
+        )
+        assert found_path(shortened, goal, goal_radius) == pytest.approx(found.path, abs=1e-9)
 
 
 def test_it_plays_to_the_end(page: Page) -> None:
@@ -181,7 +258,7 @@ def test_it_plays_to_the_end(page: Page) -> None:
 
 def test_the_search_unfolds_and_ends_in_the_path(page: Page) -> None:
     page.go_to(Keys.HOME)
-    assert page.text('#now') == '1 samples'
+    assert page.text('#now') == '1 sample'
     assert not page.has(SHOWN['hit_and_run'])
     page.go_to(Keys.END)
     assert page.has(SHOWN['hit_and_run'])
@@ -218,6 +295,69 @@ def test_zoom_keeps_the_place_under_the_pointer_and_fit_comes_back(page: Page) -
     assert not np.array_equal(page.pixels(), whole)
     ActionChains(page.browser).move_to_element_with_offset(canvas, -40, -20).perform()
     assert page.text('#place') == place
+
+
+def test_words_say_what_is_to_be_seen(page: Page) -> None:
+    page.go_to(Keys.HOME)
+    assert 'random direction' in page.text('#caption')
+    page.go_to(Keys.END)
+    assert page.result is not None
+    assert f'{page.result["length"]:.1f} m' in page.text('#caption')
+    for name in SHOWN:
+        (search,) = (s for s in data_of(page.file)['searches'] if s['name'] == name)
+        assert search['about']
+    for words in ('robot radius 0.22 m', 'seed 3', '(34, 5)', 'occupied', 'unknown', 'free'):
+        assert words in page.text('#panel')
+
+
+def test_keys_play_step_zoom_and_move(page: Page) -> None:
+    page.go_to(Keys.HOME)
+    page.browser.execute_script('document.activeElement.blur()')
+    for key, samples in ((Keys.ARROW_RIGHT, 2), (Keys.ARROW_RIGHT, 3), (Keys.ARROW_LEFT, 2)):
+        page.press(key)
+        assert page.text('#now') == f'{samples} samples'
+    page.press(Keys.SPACE)
+    assert page.find('#play').get_attribute('aria-label') == 'Pause'
+    page.press(Keys.SPACE)
+    assert page.find('#play').get_attribute('aria-label') == 'Play'
+    page.go_to(Keys.END)
+    whole = page.pixels()
+    for keys in ('+', '-'):
+        page.press(keys)
+        assert not np.array_equal(page.pixels(), whole)
+        page.press('0')
+        assert np.array_equal(page.pixels(), whole)
+    page.browser.execute_script('document.getElementById("view").focus()')
+    for key in (Keys.ARROW_RIGHT, Keys.ARROW_LEFT, Keys.ARROW_UP, Keys.ARROW_DOWN):
+        page.press(key)
+        assert not np.array_equal(page.pixels(), whole)
+        assert page.time() == 1000
+        page.press('0')
+    # What has the focus keeps its own keys.
+    switch = page.find('#algorithms [data-name="rrt"]')
+    switch.send_keys(Keys.SPACE)
+    assert switch.get_attribute('aria-pressed') == 'true'
+    assert page.find('#play').get_attribute('aria-label') == 'Play'
+
+
+def test_a_phone_shows_the_map_first_and_the_panel_on_demand(page: Page) -> None:
+    page.browser.execute_cdp_cmd('Emulation.setDeviceMetricsOverride', PHONE)
+    try:
+        page.browser.refresh()
+        page.go_to(Keys.END)
+        assert page.has(SHOWN['hit_and_run'])
+        assert not page.find('#algorithms').is_displayed()
+        page.find('summary').click()
+        page.toggle('rrt')
+        assert page.has(SHOWN['rrt'])
+        inside = page.browser.execute_script(
+            "return [...document.querySelectorAll('button, input, summary, #now, #caption')]"
+            '.map((part) => part.getBoundingClientRect())'
+            '.every((box) => box.left >= 0 && box.right <= innerWidth)'
+        )
+        assert inside
+    finally:
+        page.browser.execute_cdp_cmd('Emulation.clearDeviceMetricsOverride', {})
 
 
 def test_a_search_without_a_path_is_shown_too(

@@ -4,7 +4,6 @@ The laws of the primitives that composed spaces are made of, held on every compi
 ``enter`` is held against points along the line: nothing is free before it, something is after it.
 """
 
-from test.laws.spaces import SPACES
 from test.laws.test_space_laws import random_points, size
 
 from hnr_planner.core.kernels import interpreted, kernel
@@ -31,16 +30,6 @@ def entering(space, x, u, t):
 @kernel
 def leaving(space, x, u, t, enough):
     return primitives.leave(space, x, u, t, enough)
-
-
-@pytest.fixture(scope='module', params=SPACES)
-def space(request):
-    return SPACES[request.param]()
-
-
-@pytest.fixture
-def rng():
-    return np.random.default_rng(20160823)
 
 
 def lines(space, rng):

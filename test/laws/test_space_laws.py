@@ -5,23 +5,11 @@ Points and directions are drawn at random: lines that touch a corner exactly hav
 zero here, and tests of their own where a space has corners.
 """
 
-from test.laws.spaces import SPACES
-
 import numpy as np
 import pytest
 
 N = 200
 BAD_NUMBERS = (np.nan, np.inf, -np.inf)
-
-
-@pytest.fixture(scope='module', params=SPACES)
-def space(request):
-    return SPACES[request.param]()
-
-
-@pytest.fixture
-def rng():
-    return np.random.default_rng(20160823)
 
 
 def size(space):

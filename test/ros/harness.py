@@ -160,6 +160,12 @@ def maze(rows: int = 401, cols: int = 401, gap: int = 1) -> np.ndarray:
     return data
 
 
+def from_corner(origin: tuple[float, float, float], x: float, y: float) -> tuple[float, float]:
+    """Return the point that is `x` and `y` metres from a map's corner along its sides."""
+    z = complex(x, y) * np.exp(1j * origin[2])
+    return origin[0] + float(z.real), origin[1] + float(z.imag)
+
+
 def grid_message(
     data: np.ndarray,
     resolution: float = 0.05,
@@ -169,6 +175,14 @@ def grid_message(
     """Return a map message."""
     stamp = rclpy.clock.Clock().now().to_msg()
     return message_from_grid(Grid(data, resolution, origin, frame), stamp)
+
+
+def set_field(message: Any, field: str, value: object) -> None:
+    """Set a field of a message; dots lead to one inside others."""
+    *parents, name = field.split('.')
+    for parent in parents:
+        message = getattr(message, parent)
+    setattr(message, name, value)
 
 
 def pose(x: float, y: float, frame: str = 'map', yaw: float = 0.0) -> PoseStamped:
@@ -191,6 +205,20 @@ def yaws_of(path: PathMessage) -> np.ndarray:
     return np.array(
         [2.0 * np.arctan2(p.pose.orientation.z, p.pose.orientation.w) for p in path.poses]
     )
+
+
+def points_in(cloud: PointCloud2) -> np.ndarray:
+    """Return the points of a cloud by the description that it brings along."""
+    types = {5: 'i4', 6: 'u4', 7: 'f4'}  # the numbers that sensor_msgs/PointField defines
+    layout = np.dtype(
+        {
+            'names': [field.name for field in cloud.fields],
+            'formats': [types[field.datatype] for field in cloud.fields],
+            'offsets': [field.offset for field in cloud.fields],
+            'itemsize': cloud.point_step,
+        }
+    )
+    return np.frombuffer(cloud.data.tobytes(), dtype=layout)
 
 
 Answer = PathMessage | Trigger.Response

@@ -1,7 +1,15 @@
 """Bad maps and bad requests: answered at once and by name, and the next good one is served."""
 
 import math
-from test.ros.harness import Client, grid_message, NodeProcess, pose, two_rooms, until
+from test.ros.harness import (
+    Client,
+    grid_message,
+    NodeProcess,
+    pose,
+    set_field,
+    two_rooms,
+    until,
+)
 from typing import Any
 
 from geometry_msgs.msg import PoseStamped
@@ -52,11 +60,7 @@ def test_good_map_ends_that(client: Client, planner: NodeProcess) -> None:
 def bad_map(field: str, value: object) -> OccupancyGrid:
     """Return a map with one impossible field; dots lead to the field."""
     message = grid_message(two_rooms(50, 50))
-    place = message
-    *parents, name = field.split('.')
-    for parent in parents:
-        place = getattr(place, parent)
-    setattr(place, name, value)
+    set_field(message, field, value)
     return message
 
 

@@ -2,7 +2,8 @@
 
 from test.brute_force import path_collisions
 from test.curve_brute_force import double_integrator_faults
-from test.ros.harness import Client, grid_message, NodeProcess, points_of, pose, two_rooms
+from test.ros.harness import Client, grid_message, NodeProcess, points_of, pose
+from test.ros.rooms import DATA, GOAL, ORIGIN, RESOLUTION, START
 from typing import Any
 
 from hnr_planner.ros.outcomes import Outcome
@@ -10,18 +11,7 @@ import numpy as np
 import pytest
 from trajectory_msgs.msg import MultiDOFJointTrajectory
 
-RESOLUTION, ORIGIN = 0.05, (-2.0, 1.0, 0.4)
-DATA = two_rooms()
 SERVICES = ('plan_kinodynamic_connect', 'plan_kinodynamic_hit_and_run', 'plan_kinodynamic_rrt')
-
-
-def in_map(x: float, y: float) -> tuple[float, float]:
-    """Return the point that is `x` and `y` metres from the map's corner along its sides."""
-    z = complex(x, y) * np.exp(1j * ORIGIN[2])
-    return ORIGIN[0] + float(z.real), ORIGIN[1] + float(z.imag)
-
-
-START, GOAL = in_map(0.5, 0.6), in_map(4.5, 0.7)
 
 
 @pytest.fixture(scope='module')

@@ -1,9 +1,16 @@
 """The map source: publishes a file, changes it while running, refuses broken ones."""
 
 from collections.abc import Iterator
-import math
 from pathlib import Path
-from test.ros.harness import Client, node_process, NodeProcess, pose, SOON, until
+from test.ros.harness import (
+    Client,
+    from_corner,
+    node_process,
+    NodeProcess,
+    pose,
+    SOON,
+    until,
+)
 
 from hnr_planner.maps import FREE, OccupancyMap, OCCUPIED, save_map
 from hnr_planner.ros.map_messages import grid_from_message
@@ -12,13 +19,15 @@ from nav_msgs.srv import GetMap
 import numpy as np
 import pytest
 
+ORIGIN = (-1.0, 2.0, 0.25)
+
 
 def drawn(rows: int, cols: int, seed: int) -> OccupancyMap:
     """Return a map with some obstacles, turned and moved."""
     rng = np.random.default_rng(seed)
     data = np.where(rng.random((rows, cols)) < 0.1, OCCUPIED, FREE).astype(np.int8)
     data[:3, :3] = data[-3:, -3:] = FREE
-    return OccupancyMap(data, 0.05, (-1.0, 2.0, 0.25))
+    return OccupancyMap(data, 0.05, ORIGIN)
 
 
 @pytest.fixture(scope='module')
@@ -50,12 +59,6 @@ def client(source: NodeProcess) -> Iterator[Client]:
     client.node.destroy_publisher(client._map_publisher)
     yield client
     client.close()
-
-
-def in_map(x: float, y: float) -> tuple[float, float]:
-    """Return the point that is `x` and `y` metres from the map's corner along its sides."""
-    cos, sin = math.cos(0.25), math.sin(0.25)
-    return -1.0 + cos * x - sin * y, 2.0 + sin * x + cos * y
 
 
 def served(client: Client) -> OccupancyGrid:
@@ -102,7 +105,7 @@ def test_file_and_frame_change_while_running(client: Client, files: dict[str, Pa
 def test_planner_started_later_plans_on_it(client: Client, tmp_path: Path) -> None:
     with node_process('planner_node', tmp_path / 'log') as planner:
         planner.wait_for('map received')
-        start, goal = in_map(0.05, 0.05), in_map(1.95, 1.45)
+        start, goal = from_corner(ORIGIN, 0.05, 0.05), from_corner(ORIGIN, 1.95, 1.45)
         assert len(client.plan(pose(*start), pose(*goal)).poses) > 2
 
 

@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 import math
+from test.ros.harness import points_in, set_field
 
 from builtin_interfaces.msg import Time
 from hnr_planner.core import GridSpace, plan
@@ -10,14 +11,14 @@ from hnr_planner.ros.map_store import Grid, MapError, MapSnapshot
 from hnr_planner.ros.marker_messages import MOST_POINTS, serialised_markers
 from hnr_planner.ros.outcomes import Outcome
 from hnr_planner.ros.path_messages import path_message, serialised_path
-from hnr_planner.ros.requests import Pose, Report, Request
+from hnr_planner.ros.reports import PathReport
+from hnr_planner.ros.requests import Pose, Request
 from hnr_planner.ros.sample_messages import LAYOUT, samples_message
 from nav_msgs.msg import OccupancyGrid
 from nav_msgs.msg import Path as PathMessage
 import numpy as np
 import pytest
 from rclpy.serialization import deserialize_message
-from sensor_msgs.msg import PointCloud2
 from std_msgs.msg import Header
 from visualization_msgs.msg import Marker, MarkerArray
 
@@ -30,11 +31,7 @@ def message(**changes: object) -> OccupancyGrid:
     """Return a good map message, with some fields changed."""
     result = message_from_grid(Grid(DATA, 0.05, (1.0, -2.0, 0.5), 'floor'), STAMP)
     for name, value in changes.items():
-        place = result
-        *parents, field = name.split('__')
-        for parent in parents:
-            place = getattr(place, parent)
-        setattr(place, field, value)
+        set_field(result, name.replace('__', '.'), value)
     return result
 
 
@@ -92,7 +89,7 @@ def test_yaw_of_an_origin_of_any_norm_is_read() -> None:
     assert grid_from_message(scaled).origin[2] == pytest.approx(0.5)
 
 
-def report_on_a_map() -> Report:
+def report_on_a_map() -> PathReport:
     """Return a solved request with a tree of some size."""
     data = np.zeros((60, 60), dtype=np.int8)
     data[5:55, 20] = data[5:55, 40] = 100
@@ -101,23 +98,9 @@ def report_on_a_map() -> Report:
     start, goal = space.cell_centres(np.array([30, 30]), np.array([5, 55]))
     result = plan(space, start, goal, algorithm='rrt', seed=1, simplify=False)
     request = Request(Pose((*start, 0.0)), Pose((*goal, 0.0)), 0.0, 'rrt')
-    return Report(
-        Outcome[result.status.name], '', request, 0.0, MapSnapshot(space, grid, 1), result
+    return PathReport(
+        Outcome[result.status.name], '', request, result, snapshot=MapSnapshot(space, grid, 1)
     )
-
-
-def points_in(cloud: PointCloud2) -> np.ndarray:
-    """Return the points of a cloud by the description that it brings along."""
-    types = {5: 'i4', 6: 'u4', 7: 'f4'}  # the numbers that sensor_msgs/PointField defines
-    layout = np.dtype(
-        {
-            'names': [field.name for field in cloud.fields],
-            'formats': [types[field.datatype] for field in cloud.fields],
-            'offsets': [field.offset for field in cloud.fields],
-            'itemsize': cloud.point_step,
-        }
-    )
-    return np.frombuffer(cloud.data.tobytes(), dtype=layout)
 
 
 def test_cloud_holds_samples_and_parents_of_the_result() -> None:
@@ -194,7 +177,7 @@ def points_of(marker: Marker) -> np.ndarray:
     return np.array([(point.x, point.y) for point in marker.points])
 
 
-def markers_of(report: Report, header: Header = HEADER) -> list[Marker]:
+def markers_of(report: PathReport, header: Header = HEADER) -> list[Marker]:
     """Return the markers of a report as a subscriber gets them."""
     return deserialize_message(serialised_markers(report, header), MarkerArray).markers
 
@@ -234,5 +217,5 @@ def test_markers_are_capped() -> None:
 
 def test_markers_are_cleared_after_a_failure() -> None:
     request = Request(Pose((0.0, 0.0, 0.0)), Pose((1.0, 1.0, 0.0)), 0.0, 'rrt')
-    markers = markers_of(Report(Outcome.TIMEOUT, '', request, 1.0))
+    markers = markers_of(PathReport(Outcome.TIMEOUT, '', request))
     assert [marker.action for marker in markers] == [Marker.DELETEALL]

@@ -15,7 +15,8 @@ from hnr_planner.ros.answer import answer
 from hnr_planner.ros.nav2_goals import error_of, from_robot_on, request_of
 from hnr_planner.ros.outcomes import Outcome
 from hnr_planner.ros.path_validity import blocked_poses
-from hnr_planner.ros.requests import Pose, Report
+from hnr_planner.ros.reports import PathReport
+from hnr_planner.ros.requests import Pose
 from hnr_planner.ros.settings import RULES, Settings
 import numpy as np
 import pytest
@@ -34,7 +35,7 @@ def goal_message(start: tuple[float, float] | None = START, planner_id: str = ''
     )
 
 
-def ask(*points: tuple[float, float], message: Any = None, **settings: Any) -> Report:
+def ask(*points: tuple[float, float], message: Any = None, **settings: Any) -> PathReport:
     """Ask for a path through points and return how that ended."""
     own = replace(SETTINGS, **settings)
     request = request_of(message or goal_message(), [pose(*point) for point in points], own)

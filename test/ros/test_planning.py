@@ -6,13 +6,13 @@ from test.ros.harness import (
     Client,
     grid_message,
     NodeProcess,
+    points_in,
     points_of,
     pose,
-    two_rooms,
     until,
     yaws_of,
 )
-from test.ros.test_messages import points_in
+from test.ros.rooms import DATA, GOAL, in_map, ORIGIN, RESOLUTION, START
 
 from diagnostic_msgs.msg import DiagnosticArray
 from hnr_planner.ros.outcomes import Outcome
@@ -20,19 +20,7 @@ import numpy as np
 import pytest
 from rclpy.qos import QoSProfile
 
-RESOLUTION = 0.05
-ORIGIN = (-2.0, 1.0, 0.4)
-DATA = two_rooms()
 SERVICES = ('plan', 'plan_hit_and_run', 'plan_rrt')
-
-
-def in_map(x: float, y: float) -> tuple[float, float]:
-    """Return the point that is `x` and `y` metres from the map's corner along its sides."""
-    cos, sin = math.cos(ORIGIN[2]), math.sin(ORIGIN[2])
-    return ORIGIN[0] + cos * x - sin * y, ORIGIN[1] + sin * x + cos * y
-
-
-START, GOAL = in_map(0.5, 0.6), in_map(4.5, 0.7)
 
 
 @pytest.fixture(scope='module', autouse=True)

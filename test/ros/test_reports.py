@@ -3,7 +3,6 @@
 from dataclasses import replace
 from test.ros.test_requests import ask, maze, rooms, SETTINGS, store
 
-from hnr_planner.ros.outcome_messages import outcome_values
 from hnr_planner.ros.outcomes import Outcome
 from hnr_planner.ros.statistics import Statistics
 import numpy as np
@@ -18,7 +17,7 @@ def test_without_a_path_its_measures_are_not_numbers(outcome: Outcome) -> None:
         settings = replace(SETTINGS, max_iterations=100)
         report = ask(store(maze()), (0.05, 0.05), (20.05, 20.05), settings=settings)
     assert report.outcome is outcome
-    values = outcome_values(report)
+    values = report.values
     assert [values[name] for name in ('length', 'clearance', 'offset')] == ['nan'] * 3
     assert values['first_solution_length'] == 'nan'
 

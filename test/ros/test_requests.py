@@ -11,7 +11,8 @@ from hnr_planner.core import ALGORITHMS
 from hnr_planner.ros.answer import answer
 from hnr_planner.ros.map_store import Grid, MapError, MapSnapshot, MapStore
 from hnr_planner.ros.outcomes import Outcome
-from hnr_planner.ros.requests import Pose, Report, Request
+from hnr_planner.ros.reports import PathReport
+from hnr_planner.ros.requests import Pose, Request
 from hnr_planner.ros.settings import DEFAULTS, Settings
 import numpy as np
 import pytest
@@ -55,7 +56,7 @@ def ask(
     algorithm: str = 'rrt',
     start_pose: Pose | None = None,
     goal_pose: Pose | None = None,
-) -> Report:
+) -> PathReport:
     """Ask for a path."""
     request = Request(
         start_pose or Pose((*start, 0.0)),
@@ -67,7 +68,7 @@ def ask(
     return answer(request, settings, newest, threading.Event())
 
 
-def ask_with(part: str, pose: Pose) -> Report:
+def ask_with(part: str, pose: Pose) -> PathReport:
     """Ask for a path with a start or goal of its own."""
     if part == 'start':
         return ask(store(rooms()), start_pose=pose)

@@ -2,8 +2,15 @@
 
 from collections.abc import Iterator
 from test.brute_force import path_collisions
-from test.ros.harness import Client, free_map, grid_message, NodeProcess, pose, result_of
-from test.ros.test_messages import points_in
+from test.ros.harness import (
+    Client,
+    free_map,
+    grid_message,
+    NodeProcess,
+    points_in,
+    pose,
+    result_of,
+)
 
 from hnr_planner.ros.outcomes import Outcome
 import numpy as np

@@ -5,12 +5,15 @@ from pathlib import Path
 import subprocess
 import sys
 from test.core.planning.kinodynamic.worlds import (
+    BLOCKED,
     CAR,
     faults,
+    GOAL,
     in_map,
     INTEGRATOR,
-    serpentine,
+    SPACE,
     space_of,
+    START,
     state,
 )
 import threading
@@ -20,10 +23,6 @@ from hnr_planner.core import HnrError, plan, PlannerStatus, PlanResult
 from hnr_planner.core.systems import DoubleIntegrator
 import numpy as np
 import pytest
-
-BLOCKED = serpentine(1.5)
-SPACE = space_of(BLOCKED)
-START, GOAL = state(0.75, 0.75), in_map(5.25, 4.25)
 
 
 def solve(start: Any = START, goal: Any = GOAL, **given: Any) -> PlanResult:

@@ -1,12 +1,14 @@
 """The planners for systems: what they find, what they count, what it depends on."""
 
 from test.core.planning.kinodynamic.worlds import (
+    BLOCKED,
     CAR,
     faults,
+    GOAL,
     in_map,
     INTEGRATOR,
-    serpentine,
-    space_of,
+    SPACE,
+    START,
     state,
 )
 from typing import Any
@@ -18,9 +20,6 @@ from hnr_planner.core.systems import System
 import numpy as np
 import pytest
 
-BLOCKED = serpentine(1.5)
-SPACE = space_of(BLOCKED)
-START, GOAL = state(0.75, 0.75), in_map(5.25, 4.25)
 PAPERS = ['kinodynamic_hit_and_run', 'kinodynamic_rrt']
 
 

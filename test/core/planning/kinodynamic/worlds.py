@@ -39,6 +39,12 @@ def state(x: float, y: float, vx: float = 0.0, vy: float = 0.0) -> NDArray[np.fl
     return np.append(in_map(x, y), in_map(vx, vy) - in_map(0.0, 0.0))
 
 
+#: The serpentine that most tests plan in, from end to end.
+BLOCKED = serpentine(1.5)
+SPACE = space_of(BLOCKED)
+START, GOAL = state(0.75, 0.75), in_map(5.25, 4.25)
+
+
 def faults(
     result: PlanResult, system: System, blocked: NDArray[np.bool_], inelastic: bool = False
 ) -> list[str]:
