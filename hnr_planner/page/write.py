@@ -27,8 +27,7 @@ from PIL import Image
 COLOURS = ('#0072B2', '#D55E00', '#009E73', '#CC79A7', '#E69F00', '#56B4E9')
 #: More samples of a search than these are left out: the page would be slow.
 MOST_SAMPLES = 60_000
-#: A cell with this value or more is drawn as occupied.
-OCCUPIED = 65
+#: In the order in which the page reads them.
 SCRIPTS = ('searches.js', 'drawing.js', 'view.js', 'page.js')
 #: What each planner does, for a newcomer.
 ABOUT = {
@@ -99,7 +98,7 @@ def write_page(
         What else was asked for, in words.
 
     """
-    kinds = cell_kinds(occupancy, space.blocked, OCCUPIED)
+    kinds = cell_kinds(occupancy, space.blocked)
     data = {
         'map': _map(occupancy, kinds),
         'kinds': [KINDS[kind] for kind in np.unique(kinds)],
