@@ -1,6 +1,7 @@
 """Every corridor is one piece, as wide as asked for, from its start to its goal."""
 
 from collections.abc import Callable
+from typing import Any
 
 import cv2
 from hnr_planner.maps import Corridor, serpentine, spiral, zigzag
@@ -14,7 +15,12 @@ EVEN = [(spiral, width) for width in WIDTHS]
 EVEN += [(build, width) for build in (serpentine, zigzag) for width in (0.5, 1.0, 1.5, 2.0, 3.0)]
 
 
-@pytest.fixture(params=EVEN + [(spiral, *widths) for widths in FAT], ids=str)
+def words(parameters: tuple[Any, ...]) -> str:
+    build, *widths = parameters
+    return f'{build.__name__} {widths}'
+
+
+@pytest.fixture(params=EVEN + [(spiral, *widths) for widths in FAT], ids=words)
 def made(request: pytest.FixtureRequest) -> Corridor:
     build, width, *middle = request.param
     return build(width, middle_width=middle[0]) if middle else build(width)
