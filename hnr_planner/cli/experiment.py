@@ -10,7 +10,7 @@ import webbrowser
 from hnr_planner.cli.arguments import count
 
 #: Those of the experiments, here so that --help is fast.
-NAMES = ('spiral', 'clouds', 'corridor', 'safety', 'theory')
+NAMES = ('spiral', 'clouds', 'corridor', 'safety', 'mixing', 'theory')
 EPILOG = """\
 Rows are kept as they come: a run that was broken off goes on where it was, and a longer one
 continues a shorter one. A tenth of the runs of docs/ is good for a look. Where HNR_MAPS names a

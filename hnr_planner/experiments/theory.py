@@ -1,31 +1,23 @@
 """
-From conductance to path length: what theory says of Hit-and-Run, beside what it does.
+From the flow to the length of a path: what theory says of Hit-and-Run, beside what it does.
 
-The paper bounds the conductance of a set, from it the mixing time, and from that the length of a
-path (its Section 4). Its own constants are far from any number of steps that one would wait for;
-the chain of reasoning is sound, and can be followed with conductances that are computed. In sets
-made of square blocks one integral over lines gives the flow between all blocks, and so the
-conductance of the best cut, the relaxation time and the expected transitions into a goal.
+The paper bounds the mixing time of a set, and from that the length of a path (its Section 4). Its
+own constants are far from any number of steps that one would wait for; the chain of reasoning is
+sound, and can be followed with flows that are computed. In sets made of square blocks one integral
+over lines gives the flow between all blocks, and so the expected transitions into a goal, and a
+bound on them by way of the relaxation time. ``mixing`` measures the relaxation time itself.
 """
 
 from functools import cache
-import math
 from typing import NamedTuple
 
 from hnr_planner.core import GridSpace, sample
-from hnr_planner.core.theory import (
-    best_cut,
-    cell_flow,
-    CellFlow,
-    expected_transitions,
-    transitions_bound,
-)
+from hnr_planner.core.theory import cell_flow, CellFlow, expected_transitions, transitions_bound
 from hnr_planner.drawing import FAINT_INK
 from hnr_planner.experiments.experiment import Experiment
 from hnr_planner.experiments.figures import draw_profile, legend, Look, new_figure, style
-from hnr_planner.experiments.results import markdown, Mean, Results
+from hnr_planner.experiments.results import markdown, Results
 from hnr_planner.maps import spiral
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 import numpy as np
 from numpy.typing import NDArray
@@ -35,8 +27,8 @@ DOORS = (0.05, 0.1, 0.2, 0.4)
 WIDTHS = (0.8, 1.2, 1.6, 2.0)
 #: Side of a block, as thick as the walls [m], and cells of the grid along it.
 ROOMS_BLOCK, SPIRAL_BLOCK, FINENESS = 0.05, 0.4, 5
-#: Steps and chains that the relaxation time is measured with.
-N_STEPS, N_CHAINS = 4000, 8
+#: Lines that the flow is computed with.
+N_LINES = 1 << 17
 LOOKS = {
     'rooms': Look('two rooms and a door', '#0072B2', 'o'),
     'spiral': Look('spiral', '#D55E00', 's'),
@@ -54,21 +46,18 @@ class Blocks(NamedTuple):
     """
     A set of square blocks.
 
-    ``free`` (rows, columns) are the blocks in the set and ``goal`` those of the goal; ``side``
-    (rows, columns) are those on one side of the narrowest place.
+    ``free`` (rows, columns) are the blocks in the set and ``goal`` those of the goal.
     """
 
     space: GridSpace
     size: float
     free: NDArray[np.bool_]
     goal: NDArray[np.bool_]
-    side: NDArray[np.bool_]
 
 
 class Theory(NamedTuple):
-    """What theory says of a set."""
+    """What theory says of a set: its relaxation time, and the transitions into the goal."""
 
-    conductance: float
     relaxation: float
     expected: float
     bound: float
@@ -81,11 +70,10 @@ def cases() -> list[Case]:
 
 
 def run(case: Case, seed: int) -> dict[str, float]:
-    """Walk from a uniform point into the goal, and measure how the sides correlate in time."""
+    """Walk from a uniform point into the goal, and count."""
     blocks = blocks_of(case)
     start = _uniform_point(blocks, np.random.default_rng(seed))
-    near, far = _correlations(blocks, case, start, seed)
-    return {'transitions': _transitions(blocks, start, seed), 'near': near, 'far': far}
+    return {'transitions': _transitions(blocks, start, seed)}
 
 
 def _transitions(blocks: Blocks, start: NDArray, seed: int) -> int:
@@ -99,25 +87,6 @@ def _transitions(blocks: Blocks, start: NDArray, seed: int) -> int:
         if arrived.any():
             return int(arrived.argmax()) + 1
         n_draws *= 4  # the same walk, and more of it
-
-
-def _correlations(blocks: Blocks, case: Case, start: NDArray, seed: int) -> tuple[float, float]:
-    """Return how often a walk is on the same side after the two lags, less how often not."""
-    walks = sample(blocks.space, start, N_STEPS, n_chains=N_CHAINS, burn_in=N_STEPS, seed=seed)
-    sides = np.where(_inside(blocks, blocks.side, walks.reshape(-1, 2)), 1.0, -1.0)
-    sides = sides.reshape(N_CHAINS, N_STEPS)
-    near, far = lags(case)
-    return _correlation(sides, near), _correlation(sides, far)
-
-
-def _correlation(sides: NDArray, lag: int) -> float:
-    return float((sides[:, :-lag] * sides[:, lag:]).mean())
-
-
-def lags(case: Case) -> tuple[int, int]:
-    """Return the two lags: about half the relaxation time that theory says, and all of it."""
-    relaxation = theory_of(case).relaxation
-    return max(1, round(relaxation / 2)), max(2, round(relaxation))
 
 
 def _inside(blocks: Blocks, chosen: NDArray, points: NDArray) -> NDArray[np.bool_]:
@@ -150,11 +119,10 @@ def _rooms(door: float) -> Blocks:
     wide = round(door / ROOMS_BLOCK)
     first, last = (n - wide) // 2, (n + wide) // 2
     free[first:last, n] = True
-    goal, side = np.zeros_like(free), np.zeros_like(free)
+    goal = np.zeros_like(free)
     half = n // 2
     goal[half:, -half:] = True
-    side[:, :n] = True
-    return _blocks(free, goal, side, ROOMS_BLOCK)
+    return _blocks(free, goal, ROOMS_BLOCK)
 
 
 def _spiral(width: float) -> Blocks:
@@ -163,23 +131,17 @@ def _spiral(width: float) -> Blocks:
     rows, columns = np.indices(made.blocked.shape)
     centres = (np.stack([columns, rows], axis=-1) + 0.5) * SPIRAL_BLOCK
     near = np.abs(centres - np.array(made.goal)).max(axis=-1) < width / 2
-    return _blocks(~made.blocked, near & ~made.blocked, np.zeros_like(near), SPIRAL_BLOCK)
+    return _blocks(~made.blocked, near & ~made.blocked, SPIRAL_BLOCK)
 
 
-def _blocks(free: NDArray, goal: NDArray, side: NDArray, size: float) -> Blocks:
+def _blocks(free: NDArray, goal: NDArray, size: float) -> Blocks:
     fine = np.kron(~free, np.ones((FINENESS, FINENESS), dtype=bool)).astype(bool)
-    space = GridSpace.from_blocked(fine, size / FINENESS)
-    blocks = Blocks(space, size, free, goal, side)
-    if not side.any():
-        flow = _flow(blocks)
-        columns, rows = np.floor(flow.centre[best_cut(flow).inside] / size).astype(int).T
-        side[rows, columns] = True
-    return blocks
+    return Blocks(GridSpace.from_blocked(fine, size / FINENESS), size, free, goal)
 
 
 def _flow(blocks: Blocks) -> CellFlow:
     """Return the flow between the free blocks, without what rounding leaves to the others."""
-    flow = cell_flow(blocks.space, blocks.free.shape, 1 << 17)
+    flow = cell_flow(blocks.space, blocks.free.shape, N_LINES)
     free = _inside(blocks, blocks.free, flow.centre)
     return CellFlow(flow.area[free], flow.flow[np.ix_(free, free)], flow.centre[free])
 
@@ -193,101 +155,45 @@ def theory_of(case: Case) -> Theory:
     part = float(flow.area[goal].sum() / flow.area.sum())
     relaxation = flow.relaxation_time
     expected = float((expected_transitions(flow, goal) * flow.area).sum() / flow.area.sum())
-    return Theory(
-        best_cut(flow).conductance, relaxation, expected, transitions_bound(relaxation, part)
-    )
-
-
-def measured_relaxation(results: Results, case: Case) -> Mean:
-    """Return the relaxation time at which the correlations fall between the two lags."""
-    near, far = lags(case)
-    of = results.where(**case._asdict())
-    first, last = of.mean('near'), of.mean('far')
-    if not 0.0 < last.value < first.value:
-        return Mean(math.nan, math.nan)
-    decay = math.log(first.value / last.value)
-    relative = math.hypot(first.half / first.value, last.half / last.value) / decay
-    value = (far - near) / decay
-    return Mean(value, value * relative)
+    return Theory(relaxation, expected, transitions_bound(relaxation, part))
 
 
 def figure(results: Results) -> Figure:
-    """Draw measured against computed: relaxation times, and transitions into the goal."""
-    drawn = new_figure(10.0, 4.2)
-    relaxation, transitions = drawn.subplots(1, 2)
+    """Draw the transitions into the goal, as measured and as bounded, over those computed."""
+    drawn = new_figure(6.4, 4.6)
+    axes = drawn.subplots()
     for shape, look in LOOKS.items():
         here = [case for case in cases() if case.shape == shape]
         said = [theory_of(case) for case in here]
-        draw_profile(
-            relaxation,
-            [1.0 / theory.conductance for theory in said],
-            [measured_relaxation(results, case) for case in here],
-            look,
-        )
+        expected = [theory.expected for theory in said]
         measured = [results.where(**case._asdict()).mean('transitions') for case in here]
-        draw_profile(transitions, [theory.expected for theory in said], measured, look)
-        transitions.plot(
-            [theory.expected for theory in said],
-            [theory.bound for theory in said],
-            '--',
-            color=look.colour,
-            label=f'{look.label}: the bound',
-        )
-    _draw_diagonal(relaxation, 0.5, '1 / (2 \u03a6)')
-    _draw_diagonal(transitions, 1.0, 'as computed')
-    for axes in (relaxation, transitions):
-        axes.set(xscale='log', yscale='log')
-    style(
-        relaxation, 'Relaxation time', '1 / conductance \u03a6 of the best cut', 'steps, measured'
-    )
-    style(
-        transitions, 'Transitions into the goal', 'computed from the flow', 'measured, and bound'
-    )
-    legend(relaxation, 'upper left')
-    legend(transitions, 'upper left')
+        draw_profile(axes, expected, measured, look)
+        bounds = [theory.bound for theory in said]
+        axes.plot(expected, bounds, '--', color=look.colour, label=f'{look.label}: the bound')
+    axes.set(xscale='log', yscale='log')
+    reach = axes.get_xlim()
+    axes.plot(reach, reach, ':', color=FAINT_INK, linewidth=1.0, label='as computed')
+    style(axes, 'Transitions into the goal', 'computed from the flow', 'measured, and bound')
+    legend(axes, 'upper left')
     return drawn
-
-
-def _draw_diagonal(axes: Axes, slope: float, words: str) -> None:
-    reach = np.array(axes.get_xlim())
-    reach[0] = max(reach[0], 1.0)
-    axes.plot(reach, slope * reach, color=FAINT_INK, linewidth=1.0, linestyle=':', label=words)
 
 
 def tables(results: Results) -> str:
     """Return what was computed and what was measured."""
-    header = [
-        'set',
-        'conductance \u03a6',
-        '1 / (2 \u03a6)',
-        'relaxation, computed',
-        'measured',
-        'transitions, computed',
-        'measured',
-        'bound',
-    ]
+    header = ['set', 'relaxation time', 'transitions, computed', 'measured', 'bound']
     rows = []
     for case in cases():
         said = theory_of(case)
-        rows.append(
-            [
-                f'{case.shape} {case.width}',
-                f'{said.conductance:.4f}',
-                f'{0.5 / said.conductance:.1f}',
-                f'{said.relaxation:.1f}',
-                measured_relaxation(results, case),
-                f'{said.expected:.1f}',
-                results.where(**case._asdict()).mean('transitions'),
-                f'{said.bound:.1f}',
-            ]
-        )
+        measured = results.where(**case._asdict()).mean('transitions')
+        computed = f'{said.relaxation:.1f}', f'{said.expected:.1f}'
+        rows.append([f'{case.shape} {case.width}', *computed, measured, f'{said.bound:.1f}'])
     return markdown(header, rows)
 
 
 EXPERIMENT = Experiment(
     name='theory',
-    about='Conductance, relaxation time and path length: computed, and measured.',
-    runs=200,
+    about='How many transitions a walk takes into a goal: computed, bounded and measured.',
+    runs=1000,
     cases=cases,
     run=run,
     figure=figure,

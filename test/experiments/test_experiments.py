@@ -7,6 +7,7 @@ import re
 from hnr_planner.core import GridSpace
 from hnr_planner.experiments import clouds, load, NAMES, safety
 from hnr_planner.experiments.conduct import conduct
+from hnr_planner.experiments.mixing import sets, variation
 from hnr_planner.experiments.requests import far_pairs
 from hnr_planner.experiments.results import Results
 from hnr_planner.maps import OccupancyMap, save_map
@@ -21,6 +22,8 @@ def test_every_experiment_runs_and_repeats_itself(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.delenv('HNR_MAPS', raising=False)
+    monkeypatch.setattr(sets, 'CHAINS_PER_CELL', 4)  # a few chains, seen from afar
+    monkeypatch.setattr(variation, 'MIXED', 0.5)
     experiment = load(name)
     assert experiment.name == name
     results = conduct(experiment, 1, tmp_path, n_jobs=1)

@@ -1,0 +1,92 @@
+"""
+The relaxation time against the conductance.
+
+Both follow from the flow between the cells of a lattice, and the time is measured besides, by the
+moves of chains between cells. Cheeger's inequality holds the time between 1 / (2 Phi) and
+2 / Phi^2 (Lawler and Sokal 1988): the one where a single door is all that takes time, towards the
+other where a set is long.
+"""
+
+from functools import cache
+from typing import NamedTuple
+
+from hnr_planner.core import Chains, relaxation_time, walk_on
+from hnr_planner.core.theory import best_cut, cell_flow
+from hnr_planner.drawing import FAINT_INK
+from hnr_planner.experiments.figures import draw_profile, legend, Look, style
+from hnr_planner.experiments.mixing.sets import planar_sets
+from hnr_planner.experiments.mixing.variation import in_words
+from hnr_planner.experiments.results import markdown, Mean, Results
+from matplotlib.axes import Axes
+import numpy as np
+
+#: The flow is computed in cells so many times finer along each axis, by so many lines.
+FINER, N_LINES = 4, 1 << 18
+#: Draws of each chain that moves are counted in; their lag is this part of the computed time.
+N_DRAWS, LAG = 1000, 0.5
+#: The sets, by the first word of their names.
+LOOKS = {
+    'L': Look('L', '#CC79A7', 'D'),
+    'star': Look('star', '#E69F00', '^'),
+    'door': Look('two rooms', '#0072B2', 'o'),
+    'spiral': Look('spirals', '#D55E00', 's'),
+}
+
+
+class Computed(NamedTuple):
+    """The conductance of the best cut of a set, and its relaxation time [steps]."""
+
+    conductance: float
+    relaxation: float
+
+
+@cache
+def computed(name: str) -> Computed:
+    """Compute both from the flow of Hit-and-Run."""
+    mixing_set = planar_sets()[name]
+    rows, columns = mixing_set.lattice
+    flow = cell_flow(mixing_set.space, (FINER * rows, FINER * columns), N_LINES)
+    return Computed(best_cut(flow).conductance, flow.relaxation_time)
+
+
+def measured(name: str, chains: Chains) -> float:
+    """Measure the relaxation time of Hit-and-Run by chains that have mixed."""
+    mixing_set = planar_sets()[name]
+    draws, _ = walk_on(mixing_set.space, chains, N_DRAWS)
+    cells = mixing_set.cells(draws.reshape(-1, 2)).reshape(draws.shape[:2])
+    return relaxation_time(cells, max(1, round(LAG * computed(name).relaxation)))
+
+
+def draw_relaxation(axes: Axes, results: Results) -> None:
+    """Draw what was measured over 1 / Phi, and Cheeger's inequality."""
+    for word, look in LOOKS.items():
+        names = [name for name in planar_sets() if name.split()[0] == word]
+        places = [1.0 / computed(name).conductance for name in names]
+        draw_profile(axes, places, [_mean(results, name) for name in names], look)
+    reach = np.geomspace(4.0, 160.0, 2)
+    for bound, line, words in (
+        (reach / 2.0, ':', '1 / (2 \u03a6)'),
+        (2.0 * reach**2, '--', '2 / \u03a6\u00b2'),
+    ):
+        axes.plot(reach, bound, line, color=FAINT_INK, linewidth=1.2, label=words)
+    axes.set(xscale='log', yscale='log')
+    axes.minorticks_off()
+    style(axes, 'Relaxation time of Hit-and-Run', '1 / \u03a6, of the best cut', 'steps')
+    legend(axes, 'upper left')
+
+
+def relaxation_table(results: Results) -> str:
+    """Return what was computed and what was measured."""
+    header = ['set', '\u03a6', '1 / (2 \u03a6)', 'relaxation time, computed', 'measured', 'steps']
+    rows = []
+    for name in planar_sets():
+        conductance, relaxation = computed(name)
+        half = f'{0.5 / conductance:.2f}'
+        mixed = in_words(results.where(shape=name, walk='hit_and_run'))
+        times = half, f'{relaxation:.2f}', _mean(results, name), mixed
+        rows.append([name, f'{conductance:.4f}', *times])
+    return markdown(header, rows)
+
+
+def _mean(results: Results, name: str) -> Mean:
+    return results.where(shape=name, walk='hit_and_run').mean('relaxation')
