@@ -22,8 +22,9 @@ import numpy as np
 
 #: The flow is computed in cells so many times finer along each axis, by so many lines.
 FINER, N_LINES = 4, 1 << 18
-#: Draws of each chain that moves are counted in; their lag is this part of the computed time.
-N_DRAWS, LAG = 1000, 0.5
+#: Draws of each chain that moves are counted in; their lag is this part of the computed time, and
+#: at least so many steps: what cells hide of a fast walk fades with the lag.
+N_DRAWS, LAG, LEAST_LAG = 1000, 0.5, 8
 #: The sets, by the first word of their names.
 LOOKS = {
     'L': Look('L', '#CC79A7', 'D'),
@@ -54,7 +55,7 @@ def measured(name: str, chains: Chains) -> float:
     mixing_set = planar_sets()[name]
     draws, _ = walk_on(mixing_set.space, chains, N_DRAWS)
     cells = mixing_set.cells(draws.reshape(-1, 2)).reshape(draws.shape[:2])
-    return relaxation_time(cells, max(1, round(LAG * computed(name).relaxation)))
+    return relaxation_time(cells, max(LEAST_LAG, round(LAG * computed(name).relaxation)))
 
 
 def draw_relaxation(axes: Axes, results: Results) -> None:
