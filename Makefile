@@ -29,7 +29,7 @@ help:
 	@echo 'make bench                 side by side with OMPL, grid search and hopsy, half an hour'
 	@echo 'make bench QUICK=1         the same in some minutes, for a look'
 	@echo 'make figures               the experiments of docs/ again, half an hour'
-	@echo 'make figures RUNS=5        the same in some minutes, for a look'
+	@echo 'make figures RUNS=2        a look at them, in experiments/'
 	@echo 'make format                put the sources into shape'
 	@echo 'make clean                 remove .venv and all that was built'
 	@echo
@@ -104,8 +104,12 @@ bench: install
 # The tables of the pages in docs/ follow; what the pages say of them is for people to write.
 .PHONY: figures
 figures: install
-	$(VENV) -m hnr_planner experiment $(if $(RUNS),--runs $(RUNS)) --out docs/figures
+ifdef RUNS
+	$(VENV) -m hnr_planner experiment --runs $(RUNS)
+else
+	$(VENV) -m hnr_planner experiment --out docs/figures
 	$(VENV) -m hnr_planner.experiments
+endif
 
 .PHONY: format
 format: install

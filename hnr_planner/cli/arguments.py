@@ -178,7 +178,7 @@ def compile_kernels(use: str) -> None:
     """Have the kernels for a use ready before anything is timed; say so when that takes long."""
     from hnr_planner.core import warm_up
 
-    note = 'loading the planners; the first time they are compiled, a minute or two ...'
+    note = 'loading compiled code; the first time it is compiled, a minute or two ...'
     timer = threading.Timer(PATIENCE, print, [note], {'file': sys.stderr, 'flush': True})
     timer.daemon = True
     timer.start()

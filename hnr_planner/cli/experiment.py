@@ -54,7 +54,11 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
     parser.add_argument(
         '--jobs', type=count, metavar='N', help='runs at the same time; default one on each core'
     )
-    parser.add_argument('--fresh', action='store_true', help='throw away the rows of before')
+    parser.add_argument(
+        '--fresh',
+        action='store_true',
+        help='throw away the rows of before, as after a change of the experiment itself',
+    )
     parser.add_argument('--show', action='store_true', help='open the figure when it is done')
     parser.set_defaults(run=run)
 

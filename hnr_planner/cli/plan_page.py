@@ -47,7 +47,7 @@ def write_plan_page(
         [
             Shown(result, asked=True)
             if name == result.planner
-            else _answer(space, {**request, 'algorithm': name, 'seed': result.seed})
+            else answer(space, {**request, 'algorithm': name, 'seed': result.seed})
             for name in ALGORITHMS
             if name != 'auto'
         ],
@@ -57,7 +57,7 @@ def write_plan_page(
     )
 
 
-def _answer(space: GridSpace, request: dict[str, Any]) -> Shown:
+def answer(space: GridSpace, request: dict[str, Any]) -> Shown:
     """Return how another algorithm answers a request, without what it has no setting for."""
     planner = make_planner(request['algorithm'], {})
     lacks = [name for name in OF_PLANNERS if name in request and not hasattr(planner, name)]

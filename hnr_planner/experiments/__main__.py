@@ -2,11 +2,10 @@
 Bring the pages of the experiments up to date with their numbers.
 
 ``python -m hnr_planner.experiments`` in the project's folder gives the tables of ``docs/NAME.md``
-the rows of ``docs/figures/NAME.md``; another folder than ``docs`` can be the only argument.
+the rows of ``docs/figures/NAME.md``.
 """
 
 from pathlib import Path
-import sys
 
 from hnr_planner.experiments import NAMES
 from hnr_planner.experiments.pages import refresh
@@ -19,4 +18,4 @@ def main(docs: Path) -> None:
 
 
 if __name__ == '__main__':
-    main(Path(sys.argv[1] if len(sys.argv) > 1 else 'docs'))
+    main(Path('docs'))

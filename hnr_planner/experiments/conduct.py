@@ -69,7 +69,7 @@ def _rows(
     done, missing = file.n_rows, file.tasks(runs)
     if not missing:
         return
-    warm_up()  # so that not every process compiles the same
+    warm_up()  # so that not every process compiles what grids need
     compute = Parallel(n_jobs=n_jobs, return_as='generator')
     computed = compute(delayed(experiment.run)(case, seed) for case, seed in missing)
     bar = tqdm(

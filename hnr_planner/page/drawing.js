@@ -18,9 +18,10 @@ function redraw() {
 function draw() {
   const dots = window.devicePixelRatio || 1;
   const {clientWidth: width, clientHeight: height} = canvas;
-  if (canvas.width !== width * dots || canvas.height !== height * dots) {
-    canvas.width = width * dots;
-    canvas.height = height * dots;
+  const [columns, rows] = [Math.round(width * dots), Math.round(height * dots)];
+  if (canvas.width !== columns || canvas.height !== rows) {
+    canvas.width = columns;
+    canvas.height = rows;
   }
   context.setTransform(dots, 0, 0, dots, 0, 0);
   context.clearRect(0, 0, width, height);

@@ -5,14 +5,14 @@ import math
 from hnr_planner.core import BallWalk, HitAndRunWalk
 from hnr_planner.core.sampling.walks import Walk
 from hnr_planner.drawing import FAINT_INK
-from hnr_planner.experiments.figures import draw_profile, Look, style
-from hnr_planner.experiments.mixing.variation import between, in_words, LOOKS, MIXED, steps
+from hnr_planner.experiments.figures import draw_profile, Look, LOOKS, style
+from hnr_planner.experiments.mixing.variation import between, in_words, MIXED, SEEN_AT, steps
 from hnr_planner.experiments.results import markdown, Results
 from matplotlib.axes import Axes
 import numpy as np
 
 WALKS = {
-    'hit_and_run': Look('Hit-and-Run', '#0072B2', 'o'),
+    'hit_and_run': LOOKS['hit_and_run'],
     'ball_walk': Look('ball walk, segment visible', '#E69F00', '^'),
     'end_point': Look('ball walk, end point only', '#CC79A7', 's'),
 }
@@ -25,7 +25,7 @@ RADII = {
 }
 TIMES = (1, 2, 4, 8)
 #: Looks that are drawn: from 8 on every time the steps have doubled, which is when chains stop.
-DRAWN = (*LOOKS[:4], LOOKS[5], *LOOKS[7::4])
+DRAWN = (*SEEN_AT[:4], SEEN_AT[5], *SEEN_AT[7::4])
 #: The sets whose curves are drawn.
 PANELS = {
     'L': 'L, arms 1 m wide',

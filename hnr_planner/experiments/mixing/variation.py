@@ -21,12 +21,12 @@ import numpy as np
 MIXED = 0.1
 #: Looks, and steps between them: at first after every step, then four while the steps double.
 STRIDES = ((8, 1), *((4, 2**k) for k in range(1, 14)))
-#: Steps of each look.
-LOOKS = tuple(accumulate(apart for n_looks, apart in STRIDES for _ in range(n_looks)))
+#: Steps after which the chains are looked at.
+SEEN_AT = tuple(accumulate(apart for n_looks, apart in STRIDES for _ in range(n_looks)))
 
 
 class Approach(NamedTuple):
-    """What was seen at each of ``LOOKS`` until a set was mixed, and the chains after that."""
+    """What was seen at each of ``SEEN_AT`` until a set was mixed, and the chains after that."""
 
     seen: Sequence[TotalVariation]
     chains: Chains
@@ -55,13 +55,13 @@ def columns(seen: Sequence[TotalVariation]) -> dict[str, float]:
     """
     below = [distance.lower_bound for distance in seen]
     above = [distance.plug_in for distance in seen]
-    missing = [math.nan] * (len(LOOKS) - len(seen))
+    missing = [math.nan] * (len(SEEN_AT) - len(seen))
     return {
         'floor': seen[0].floor,
         'first': steps_to_mix(below),
         'last': steps_to_mix(above),
-        **{f'below_{steps}': at for steps, at in zip(LOOKS, below + missing, strict=True)},
-        **{f'above_{steps}': at for steps, at in zip(LOOKS, above + missing, strict=True)},
+        **{f'below_{steps}': at for steps, at in zip(SEEN_AT, below + missing, strict=True)},
+        **{f'above_{steps}': at for steps, at in zip(SEEN_AT, above + missing, strict=True)},
     }
 
 
@@ -72,9 +72,9 @@ def steps_to_mix(distances: Sequence[float]) -> float:
         return math.nan
     k = int(mixed[0])
     if k == 0:
-        return float(LOOKS[0])
+        return float(SEEN_AT[0])
     part = (distances[k - 1] - MIXED) / (distances[k - 1] - distances[k])
-    return LOOKS[k - 1] + part * (LOOKS[k] - LOOKS[k - 1])
+    return SEEN_AT[k - 1] + part * (SEEN_AT[k] - SEEN_AT[k - 1])
 
 
 def between(first: Mean, last: Mean) -> Mean:

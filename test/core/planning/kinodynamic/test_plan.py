@@ -134,16 +134,6 @@ def test_ends_that_are_no_good_are_named() -> None:
     assert result.status is PlannerStatus.UNREACHABLE and 'no path exists' in result.message
 
 
-def test_a_start_outside_the_map_harms_no_request_to_come(tmp_path: Path) -> None:
-    """In a process of its own: the first request compiles, before anybody looks at its ends."""
-    script = tmp_path / 'first_request.py'
-    script.write_text(FIRST_REQUEST)
-    done = subprocess.run(
-        [sys.executable, script], capture_output=True, text=True, cwd=Path(__file__).parents[4]
-    )
-    assert (done.returncode, done.stdout) == (0, 'INVALID_START\nSOLVED\n'), done.stderr
-
-
 #: Moving in from far outside, and stopping inside, as far as the bounds are concerned.
 FIRST_REQUEST = """
 import sys
@@ -156,6 +146,18 @@ system = DoubleIntegrator(max_speed=1e5)
 for start in ((-5e7, 5.0, (1e8 + 10.0) ** 0.5, 0.0), (2.0, 5.0, 0.0, 0.0)):
     print(plan(space, start, (8.0, 8.0), system=system, seed=0).status.name)
 """
+
+
+def test_a_start_outside_the_map_harms_no_request_to_come(tmp_path: Path) -> None:
+    """In a process of its own: the first request compiles, before anybody looks at its ends."""
+    script = tmp_path / 'first_request.py'
+    script.write_text(FIRST_REQUEST)
+    done = subprocess.run(
+        [sys.executable, script], capture_output=True, text=True, cwd=Path(__file__).parents[4]
+    )
+    assert (done.returncode, done.stdout) == (0, 'INVALID_START\nSOLVED\n'), done.stderr
+
+
 CERTAIN = {
     'head on, past the stopping distance': state(4.6, 0.75, 1.9, 0.0),
     'between two walls': state(3.0, 1.45, 0.0, 1.9),
