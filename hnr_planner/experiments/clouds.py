@@ -43,6 +43,7 @@ OF_SEARCH = ['transitions', 'rejected', 'step', *ARRIVALS]
 TOLD = {
     'transitions': 'transitions',
     'samples to half the way': ARRIVALS[N_PARTS // 2 - 1],
+    'to the goal': ARRIVALS[-1],
     'for the last tenth': 'last_tenth',
     'mean step [m]': 'step',
     'unevenness': 'uneven',
