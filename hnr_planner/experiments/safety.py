@@ -32,8 +32,9 @@ MAPS_VARIABLE = 'HNR_MAPS'
 ROBOT_RADIUS = 0.22
 #: Nearer than this to an obstacle [m], past the robot's own radius, is near.
 NEAR = 0.1
-#: Distance of the points at which the clearance of a path is measured [m].
-SPACING = 0.02
+#: Distance of the points at which the clearance of a path is measured [m]; they are farther apart
+#: where a path, the walk of millions of steps, would have more of them than this.
+SPACING, POINTS_MAX = 0.02, 500_000
 GRID_SEARCHES = {'a_star': a_star, 'wavefront': wavefront}
 #: Planners, and the clearance that they are asked to keep [m].
 PLANNERS = (
@@ -126,7 +127,8 @@ def measures(space: GridSpace, path: NDArray) -> dict[str, float]:
 def _spread(path: NDArray) -> NDArray:
     """Return points at equal distances along a path."""
     ends = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(path, axis=0).T))])
-    at = np.linspace(0.0, ends[-1], max(2, int(ends[-1] / SPACING)))
+    n_points = min(max(2, int(ends[-1] / SPACING)), POINTS_MAX)
+    at = np.linspace(0.0, ends[-1], n_points)
     return np.stack([np.interp(at, ends, path[:, axis]) for axis in (0, 1)], axis=1)
 
 
