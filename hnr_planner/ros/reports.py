@@ -50,8 +50,13 @@ class Report(ABC):
 
     @property
     @abstractmethod
+    def algorithm(self) -> str:
+        """Return the name of the planner or walk."""
+
+    @property
     def values(self) -> dict[str, str]:
         """Return everything worth knowing; seconds and metres, NaN where unknown."""
+        return {'why': self.why, 'algorithm': self.algorithm, 'elapsed': f'{self.elapsed:.6f}'}
 
 
 @dataclass(frozen=True)
@@ -116,12 +121,14 @@ class PathReport(Report):
         return float(math.dist(self.path[-1], self.request.goal.point))
 
     @property
+    def algorithm(self) -> str:
+        """Return the planner that planned, or else the one asked for."""
+        return self.request.algorithm if self.result is None else self.result.planner
+
+    @property
     def values(self) -> dict[str, str]:
         """Return everything worth knowing; seconds and metres, NaN where unknown."""
-        values = {
-            'why': self.why,
-            'algorithm': self.request.algorithm,
-            'elapsed': f'{self.elapsed:.6f}',
+        values = super().values | {
             'clearance': f'{self.clearance:.6g}',
             'offset': f'{self.offset:.6g}',
             'escape': f'{self.escape if self.solved else math.nan:.6g}',
@@ -132,7 +139,6 @@ class PathReport(Report):
         if result is not None:
             first_elapsed, first_length = result.first_solution or (math.nan, math.nan)
             values |= {
-                'algorithm': result.planner,
                 'seed': str(result.seed),
                 'iterations': str(result.iterations),
                 'samples': str(len(result.samples)),
@@ -180,13 +186,14 @@ class DrawsReport(Report):
         return self.draws.previous[0]
 
     @property
+    def algorithm(self) -> str:
+        """Return the walk that the parameters name."""
+        return self.settings.sample_walk
+
+    @property
     def values(self) -> dict[str, str]:
         """Return everything worth knowing; seconds."""
-        values = {
-            'why': self.why,
-            'algorithm': self.settings.sample_walk,
-            'elapsed': f'{self.elapsed:.6f}',
-        }
+        values = super().values
         if self.draws is not None:
             n_steps = (len(self.points) - self.n_parts) * self.settings.sample_thin
             values |= {
