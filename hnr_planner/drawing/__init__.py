@@ -23,10 +23,8 @@ from hnr_planner.drawing.style import (
     GOAL,
     INK,
     KINDS,
-    OTHER_PATH,
     PATH,
     START,
-    UNKNOWN,
 )
 
 __all__ = [
@@ -36,10 +34,8 @@ __all__ = [
     'GOAL',
     'INK',
     'KINDS',
-    'OTHER_PATH',
     'PATH',
     'START',
-    'UNKNOWN',
     'Plan',
     'cell_kinds',
     'draw_ends',

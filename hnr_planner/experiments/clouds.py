@@ -88,7 +88,7 @@ def run(case: Case, seed: int) -> dict[str, float]:
     if case.algorithm == UNIFORM:
         points, searched = _uniform_points(corridor.space, rng), dict.fromkeys(OF_SEARCH, np.nan)
     else:
-        search = spiral.Case('even', case.width, case.width, case.algorithm, 'region')
+        search = spiral.Case(case.width, case.width, case.algorithm, 'region')
         result = spiral.search(search, seed)
         points, searched = result.samples, _searched(corridor, result)
     return {**searched, **_evenness(corridor, points, rng), **_nearness(corridor, points)}

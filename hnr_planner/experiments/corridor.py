@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 from hnr_planner.core import GridSpace, plan, PlanResult
 from hnr_planner.core.systems import DoubleIntegrator
 from hnr_planner.experiments.experiment import Experiment
-from hnr_planner.experiments.figures import draw_means, legend, LOOKS, new_figure, style
+from hnr_planner.experiments.figures import draw_profile, legend, LOOKS, new_figure, style
 from hnr_planner.experiments.median_run import draw_run, median_run
 from hnr_planner.experiments.results import markdown, Results
 from hnr_planner.maps import Corridor, serpentine, zigzag
@@ -102,7 +102,7 @@ def figure(results: Results) -> Figure:
         ('steps', 'serpentine', 'steps', 'Serpentine: integration steps', ''),
     ):
         axes[name].sharey(axes['serpentine'])
-        _draw_lines(axes[name], results.where(shape=shape), column)
+        _draw_lines(axes[name], results, shape, column)
         style(axes[name], title, 'width of the corridor [m]', y)
     legend(axes['z'], 'upper right')
     made, _ = built('serpentine', SHOWN_WIDTH)
@@ -113,13 +113,15 @@ def figure(results: Results) -> Figure:
     return drawn
 
 
-def _draw_lines(axes: Axes, results: Results, column: str) -> None:
+def _draw_lines(axes: Axes, results: Results, shape: str, column: str) -> None:
     for algorithm in ALGORITHMS:
         for transition, line in zip(TRANSITIONS, ('-', '--'), strict=True):
             look = LOOKS[algorithm]
             words = look.label if transition == 'arrival' else f'{look.label}, one step'
-            chosen = results.where(algorithm=algorithm, transition=transition)
-            draw_means(axes, chosen, 'width', column, look, label=words, line=line)
+            here = [Case(shape, width, algorithm, transition) for width in WIDTHS]
+            means = [results.of(case).mean(column) for case in here]
+            draw_profile(axes, WIDTHS, means, look, label=words, line=line)
+    axes.set_xticks(WIDTHS)
     axes.set_yscale('log')
 
 

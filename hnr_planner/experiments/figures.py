@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Literal, NamedTuple
 
 from hnr_planner.drawing import draw_title, FAINT_INK, FRAME, INK
-from hnr_planner.experiments.results import Mean, Results
+from hnr_planner.experiments.results import Mean
 from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.colors import to_rgb
@@ -60,23 +60,6 @@ def style(axes: Axes, title: str, x: str, y: str) -> None:
     for side, spine in axes.spines.items():
         spine.set_visible(side in ('left', 'bottom'))
         spine.set_color(FRAME)
-
-
-def draw_means(
-    axes: Axes,
-    results: Results,
-    x: str,
-    y: str,
-    look: Look,
-    *,
-    label: str | None = None,
-    line: str = '-',
-) -> None:
-    """Draw the mean of a column over another one, with its interval."""
-    places = sorted(results.distinct(x))
-    means = [results.where(**{x: place}).mean(y) for place in places]
-    draw_profile(axes, places, means, look, label=label, line=line)
-    axes.set_xticks(places)
 
 
 def draw_profile(

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 
 from hnr_planner.core import GridSpace, plan, PlanResult
 from hnr_planner.experiments.experiment import Experiment
-from hnr_planner.experiments.figures import draw_means, legend, LOOKS, new_figure, style
+from hnr_planner.experiments.figures import draw_profile, legend, LOOKS, new_figure, style
 from hnr_planner.experiments.median_run import draw_run, median_run
 from hnr_planner.experiments.results import markdown, Results
 from hnr_planner.maps import Corridor, spiral
@@ -41,21 +41,21 @@ LAYOUT: list[Any] = [['even', 'fat'], ['hit_and_run', 'rrt']]
 class Case(NamedTuple):
     """A spiral and a search through it; widths of the arms and of the middle one [m]."""
 
-    family: str
     width: float
     middle: float
     algorithm: str
     ends: str
 
 
-#: The first three fields of the cases: the spirals of both families.
-EVEN = [('even', width, width) for width in WIDTHS]
-FAT = [('fat', NARROW, middle) for middle in MIDDLES]
+#: The spirals of both families: the first two fields of the cases. One of them is in both.
+EVEN = [(width, width) for width in WIDTHS]
+FAT = [(NARROW, middle) for middle in MIDDLES]
 
 
 def cases() -> list[Case]:
     """List every search through every spiral."""
-    return [Case(*shape, *search) for shape in EVEN + FAT for search in SEARCHES]
+    shapes = dict.fromkeys(EVEN + FAT)
+    return [Case(*shape, *search) for shape in shapes for search in SEARCHES]
 
 
 def run(case: Case, seed: int) -> dict[str, float]:
@@ -97,9 +97,9 @@ def figure(results: Results) -> Figure:
     """Draw transitions over both families' widths, and the samples of one run of each planner."""
     drawn = new_figure(10.0, 9.2)
     axes = drawn.subplot_mosaic(LAYOUT, height_ratios=(1, 1.1))
-    _draw_family(axes['even'], results.where(family='even'))
+    _draw_family(axes['even'], results, EVEN)
     style(axes['even'], 'All arms equally wide', 'width of the arms [m]', 'transitions, mean')
-    _draw_family(axes['fat'], results.where(family='fat'))
+    _draw_family(axes['fat'], results, FAT)
     style(
         axes['fat'],
         f'Arms {NARROW} m wide, the middle one fatter',
@@ -109,18 +109,20 @@ def figure(results: Results) -> Figure:
     legend(axes['even'], 'lower left')
     made, _ = built(SHOWN_WIDTH, SHOWN_WIDTH)
     for name in ('hit_and_run', 'rrt'):
-        shown = Case('even', SHOWN_WIDTH, SHOWN_WIDTH, name, 'region')
+        shown = Case(SHOWN_WIDTH, SHOWN_WIDTH, name, 'region')
         words = f'{LOOKS[name].label}, width {SHOWN_WIDTH}'
         draw_run(axes[name], made, median_run(results, shown, search), words)
     return drawn
 
 
-def _draw_family(axes: Axes, results: Results) -> None:
-    for algorithm, ends in SEARCHES:
-        chosen = results.where(algorithm=algorithm, ends=ends)
+def _draw_family(axes: Axes, results: Results, shapes: list[tuple[float, float]]) -> None:
+    middles = [middle for _, middle in shapes]
+    for search in SEARCHES:
+        algorithm, ends = search
+        means = [results.of(Case(*shape, *search)).mean('transitions') for shape in shapes]
         line = '-' if ends == 'region' else '--'
-        words = _words(algorithm, ends)
-        draw_means(axes, chosen, 'middle', 'transitions', LOOKS[algorithm], label=words, line=line)
+        draw_profile(axes, middles, means, LOOKS[algorithm], label=_words(*search), line=line)
+    axes.set_xticks(middles)
     axes.set_yscale('log')
 
 
@@ -133,7 +135,7 @@ def tables(results: Results) -> str:
     return '\n'.join(_table(results, *family) for family in families.items())
 
 
-def _table(results: Results, words: str, shapes: list[tuple[str, float, float]]) -> str:
+def _table(results: Results, words: str, shapes: list[tuple[float, float]]) -> str:
     header = [words, *(_words(*search) for search in SEARCHES), 'RRT / Hit-and-Run']
     rows = []
     for shape in shapes:

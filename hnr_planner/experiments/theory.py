@@ -166,7 +166,7 @@ def figure(results: Results) -> Figure:
         here = [case for case in cases() if case.shape == shape]
         said = [theory_of(case) for case in here]
         expected = [theory.expected for theory in said]
-        measured = [results.where(**case._asdict()).mean('transitions') for case in here]
+        measured = [results.of(case).mean('transitions') for case in here]
         draw_profile(axes, expected, measured, look)
         bounds = [theory.bound for theory in said]
         axes.plot(expected, bounds, '--', color=look.colour, label=f'{look.label}: the bound')
@@ -184,7 +184,7 @@ def tables(results: Results) -> str:
     rows = []
     for case in cases():
         said = theory_of(case)
-        measured = results.where(**case._asdict()).mean('transitions')
+        measured = results.of(case).mean('transitions')
         computed = f'{said.relaxation:.1f}', f'{said.expected:.1f}'
         rows.append([f'{case.shape} {case.width}', *computed, measured, f'{said.bound:.1f}'])
     return markdown(header, rows)
