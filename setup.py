@@ -77,8 +77,8 @@ setup(
     zip_safe=False,  # the kernels' cache is keyed by their source files
     entry_points={
         'console_scripts': [
-            'map_node = hnr_planner.ros.map_node:main',
-            'planner_node = hnr_planner.ros.planner_node:main',
+            'map_node = hnr_planner.ros.node.map_node:main',
+            'planner_node = hnr_planner.ros.node.planner_node:main',
         ],
     },
 )

@@ -27,7 +27,7 @@ from benchmarks.sections import Bench, Section, Verdict, verdict_table
 from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import PoseStamped
 from hnr_planner.core import GridSpace, plan
-from hnr_planner.ros.outcome_messages import read_outcome
+from hnr_planner.ros.messages.outcomes import read_outcome
 from nav_msgs.msg import OccupancyGrid
 from nav_msgs.msg import Path as PathMessage
 from nav_msgs.srv import GetPlan

@@ -14,9 +14,9 @@ import time
 
 from benchmarks.ompl.driver import Floats, read_grid
 from hnr_planner.core import GridSpace
-from hnr_planner.core.kernels import kernel
-from hnr_planner.core.spaces.grid_traversal import GridData
-from hnr_planner.core.spaces.primitives import contains, sees
+from hnr_planner.core.kernels.kernel import kernel
+from hnr_planner.core.spaces.grid.traversal import GridData
+from hnr_planner.core.spaces.primitives import contains, segment_is_free
 import numpy as np
 from ompl import base, geometric, util
 
@@ -41,7 +41,7 @@ class GridTraversal(base.MotionValidator):
 
 @kernel
 def _is_motion_free(free_distance, labels, ax, ay, bx, by):
-    return sees(GridData(free_distance, labels), np.array((ax, ay)), np.array((bx, by)))
+    return segment_is_free(GridData(free_distance, labels), np.array((ax, ay)), np.array((bx, by)))
 
 
 @kernel

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from hnr_planner.core import ALGORITHMS, GridSpace, plan, PlanResult
-from hnr_planner.core.planning.algorithms import make_planner
+from hnr_planner.core.planning.registry import make_planner
 from hnr_planner.maps import OccupancyMap
 from hnr_planner.page import Shown, write_page
 

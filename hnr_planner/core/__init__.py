@@ -7,17 +7,13 @@ The algorithms, free of ROS: spaces, walks on them, and planners.
 """
 
 from hnr_planner.core.errors import Cancelled, HnrError, RequestError, SpaceError, StuckError
-from hnr_planner.core.planning.algorithms import ALGORITHMS
-from hnr_planner.core.planning.hit_and_run import HitAndRun
-from hnr_planner.core.planning.kinodynamic.algorithms import (
-    KINODYNAMIC_ALGORITHMS,
-    KINODYNAMIC_PLANNERS,
-)
 from hnr_planner.core.planning.plan import plan
+from hnr_planner.core.planning.planners.hit_and_run import HitAndRun
+from hnr_planner.core.planning.planners.rrt import RRT
+from hnr_planner.core.planning.postprocessing.simplify import simplify
+from hnr_planner.core.planning.registry import ALGORITHMS
 from hnr_planner.core.planning.result import FirstSolution, PlannerStatus, PlanResult
 from hnr_planner.core.planning.roadmap.roadmap import Roadmap
-from hnr_planner.core.planning.rrt import RRT
-from hnr_planner.core.planning.simplify import simplify
 from hnr_planner.core.sampling.chains import begin_chains, Chains, walk_on
 from hnr_planner.core.sampling.diagnostics import (
     diagnose,
@@ -49,6 +45,10 @@ from hnr_planner.core.spaces import (
     ShearedSpace,
     Space,
     UnionSpace,
+)
+from hnr_planner.core.trajectories.registry import (
+    KINODYNAMIC_ALGORITHMS,
+    KINODYNAMIC_PLANNERS,
 )
 from hnr_planner.core.warm_up import warm_up
 

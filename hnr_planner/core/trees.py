@@ -1,6 +1,6 @@
 """Trees in tables: each row has the row of its parent, and a root has none."""
 
-from hnr_planner.core.kernels import kernel
+from hnr_planner.core.kernels.kernel import kernel
 import numpy as np
 
 #: No row: the parent of a root, or a tree that is not there.

@@ -1,13 +1,13 @@
 """Compiling everything before anyone waits for it."""
 
 from hnr_planner.core.checks import check_choice
-from hnr_planner.core.planning.algorithms import ALGORITHMS
-from hnr_planner.core.planning.kinodynamic.algorithms import KINODYNAMIC_PLANNERS
 from hnr_planner.core.planning.plan import plan
+from hnr_planner.core.planning.registry import ALGORITHMS
 from hnr_planner.core.sampling.sample import sample
 from hnr_planner.core.sampling.walks import WALKS
-from hnr_planner.core.spaces.grid import GridSpace
+from hnr_planner.core.spaces.grid.grid_space import GridSpace
 from hnr_planner.core.systems import DoubleIntegrator
+from hnr_planner.core.trajectories.registry import KINODYNAMIC_PLANNERS
 import numpy as np
 
 START, GOAL = (0.5, 0.5), (2.5, 2.5)

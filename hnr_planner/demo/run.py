@@ -93,8 +93,10 @@ def _nodes(
         processes = Processes(screen, interruptions, domain, folder / 'log')
         screen.say('demo', f'starting the map source and the planner in ROS domain {domain}')
         try:
-            processes.start('map', 'hnr_planner.ros.map_node', _map_arguments(scene))
-            processes.start('planner', 'hnr_planner.ros.planner_node', _planner_arguments(scene))
+            processes.start('map', 'hnr_planner.ros.node.map_node', _map_arguments(scene))
+            processes.start(
+                'planner', 'hnr_planner.ros.node.planner_node', _planner_arguments(scene)
+            )
             yield processes, domain, folder
         finally:
             complaints = processes.stop()

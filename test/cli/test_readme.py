@@ -93,7 +93,9 @@ def test_make_targets_exist() -> None:
 
 
 def test_names_of_ros_are_those_of_the_node() -> None:
-    node = pytest.importorskip('hnr_planner.ros.node', reason='needs ROS 2', exc_type=ImportError)
+    node = pytest.importorskip(
+        'hnr_planner.ros.node.planner', reason='needs ROS 2', exc_type=ImportError
+    )
     services = set(re.findall(r'`~/(plan\w*)`', README))
     assert services == set(node.SERVICES)
 

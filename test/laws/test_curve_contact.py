@@ -5,8 +5,8 @@ from test.curve_brute_force import Bend, Curve, curve_collisions, Throw
 from typing import Any
 
 from hnr_planner.core import GridSpace
-from hnr_planner.core.kernels import interpreted
-from hnr_planner.core.spaces.curves import Arc, leave_curve_from, Parabola
+from hnr_planner.core.kernels.kernel import interpreted
+from hnr_planner.core.spaces.curves.curve import Arc, leave_curve_from, Parabola
 import numpy as np
 import pytest
 

@@ -12,7 +12,7 @@ from test.laws import maps
 
 import cv2
 from hnr_planner.core import GridSpace
-from hnr_planner.core.spaces.primitives import leave
+from hnr_planner.core.spaces.primitives import first_exit
 import numba
 import numpy as np
 import pytest
@@ -108,7 +108,7 @@ def plain_ends(blocked, points, directions):
 def fast_ends(data, points, directions, enough):
     ends = np.empty(len(points))
     for k in range(len(points)):
-        ends[k] = leave(data, points[k], directions[k], 0.0, enough[k])
+        ends[k] = first_exit(data, points[k], directions[k], 0.0, enough[k])
     return ends
 
 

@@ -1,12 +1,12 @@
 """
 The laws of the primitives that composed spaces are made of, held on every compiled space.
 
-``enter`` is held against points along the line: nothing is free before it, something is after it.
+``first_entry`` is held against points along the line: nothing is free before it, something after.
 """
 
 from test.laws.test_space_laws import random_points, size
 
-from hnr_planner.core.kernels import interpreted, kernel
+from hnr_planner.core.kernels.kernel import interpreted, kernel
 from hnr_planner.core.spaces import primitives
 from hnr_planner.core.spaces.primitives import chord
 import numpy as np
@@ -24,12 +24,12 @@ def touching(space, points):
 
 @kernel
 def entering(space, x, u, t):
-    return primitives.enter(space, x, u, t)
+    return primitives.first_entry(space, x, u, t)
 
 
 @kernel
 def leaving(space, x, u, t, enough):
-    return primitives.leave(space, x, u, t, enough)
+    return primitives.first_exit(space, x, u, t, enough)
 
 
 def lines(space, rng):

@@ -12,7 +12,7 @@ from hnr_planner.core import (
     Space,
     UnionSpace,
 )
-from hnr_planner.core.spaces.curves import Arc, knows_curves, leave_curve_from, Parabola
+from hnr_planner.core.spaces.curves.curve import Arc, knows_curves, leave_curve_from, Parabola
 import numpy as np
 import pytest
 from shapely import Polygon

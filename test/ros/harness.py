@@ -18,10 +18,10 @@ from typing import Any
 
 from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import PoseStamped
-from hnr_planner.ros.map_messages import message_from_grid
-from hnr_planner.ros.map_store import Grid
-from hnr_planner.ros.outcome_messages import read_outcome
-from hnr_planner.ros.outcomes import Outcome
+from hnr_planner.ros.messages.maps import message_from_grid
+from hnr_planner.ros.messages.outcomes import read_outcome
+from hnr_planner.server.map_store import Grid
+from hnr_planner.server.outcomes import Outcome
 from nav_msgs.msg import OccupancyGrid
 from nav_msgs.msg import Path as PathMessage
 from nav_msgs.srv import GetPlan

@@ -10,7 +10,7 @@ import sys
 import threading
 import time
 
-from hnr_planner.ros.process import run
+from hnr_planner.ros.node.process import run
 from rclpy.node import Node
 from std_msgs.msg import Bool
 

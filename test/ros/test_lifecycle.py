@@ -20,7 +20,7 @@ from test.ros.harness import (
 )
 
 from diagnostic_msgs.msg import DiagnosticArray
-from hnr_planner.ros.outcomes import Outcome
+from hnr_planner.server.outcomes import Outcome
 from lifecycle_msgs.msg import Transition
 from lifecycle_msgs.srv import ChangeState, GetState
 import pytest
@@ -233,7 +233,7 @@ def test_node_survives_many_changes_while_requests_come(
 
 FAILING = """
 import rclpy
-from hnr_planner.ros.managed_node import ManagedNode
+from hnr_planner.ros.node.managed_node import ManagedNode
 
 
 class Failing(ManagedNode):

@@ -13,7 +13,7 @@ from test.ros.harness import (
 )
 
 from hnr_planner.maps import FREE, OccupancyMap, OCCUPIED, save_map
-from hnr_planner.ros.map_messages import grid_from_message
+from hnr_planner.ros.messages.maps import grid_from_message
 from nav_msgs.msg import OccupancyGrid
 from nav_msgs.srv import GetMap
 import numpy as np

@@ -6,14 +6,14 @@ from test.ros.harness import points_in, set_field
 
 from builtin_interfaces.msg import Time
 from hnr_planner.core import GridSpace, plan
-from hnr_planner.ros.map_messages import as_written, grid_from_message, message_from_grid
-from hnr_planner.ros.map_store import Grid, MapError, MapSnapshot
-from hnr_planner.ros.marker_messages import MOST_POINTS, serialised_markers
-from hnr_planner.ros.outcomes import Outcome
-from hnr_planner.ros.path_messages import path_message, serialised_path
-from hnr_planner.ros.reports import PathReport
-from hnr_planner.ros.requests import Pose, Request
-from hnr_planner.ros.sample_messages import LAYOUT, samples_message
+from hnr_planner.ros.messages.maps import as_written, grid_from_message, message_from_grid
+from hnr_planner.ros.messages.markers import MOST_POINTS, serialised_markers
+from hnr_planner.ros.messages.paths import path_message, serialised_path
+from hnr_planner.ros.messages.samples import LAYOUT, samples_message
+from hnr_planner.server.map_store import Grid, MapError, MapSnapshot
+from hnr_planner.server.outcomes import Outcome
+from hnr_planner.server.requests import PlanRequest, Pose
+from hnr_planner.server.responses import PlanResponse
 from nav_msgs.msg import OccupancyGrid
 from nav_msgs.msg import Path as PathMessage
 import numpy as np
@@ -89,7 +89,7 @@ def test_yaw_of_an_origin_of_any_norm_is_read() -> None:
     assert grid_from_message(scaled).origin[2] == pytest.approx(0.5)
 
 
-def report_on_a_map() -> PathReport:
+def report_on_a_map() -> PlanResponse:
     """Return a solved request with a tree of some size."""
     data = np.zeros((60, 60), dtype=np.int8)
     data[5:55, 20] = data[5:55, 40] = 100
@@ -97,8 +97,8 @@ def report_on_a_map() -> PathReport:
     space = GridSpace.from_occupancy(data, grid.resolution, grid.origin)
     start, goal = space.cell_centres(np.array([30, 30]), np.array([5, 55]))
     result = plan(space, start, goal, algorithm='rrt', seed=1, simplify=False)
-    request = Request(Pose((*start, 0.0)), Pose((*goal, 0.0)), 0.0, 'rrt')
-    return PathReport(
+    request = PlanRequest(Pose((*start, 0.0)), Pose((*goal, 0.0)), 0.0, 'rrt')
+    return PlanResponse(
         Outcome[result.status.name], '', request, result, snapshot=MapSnapshot(space, grid, 1)
     )
 
@@ -177,7 +177,7 @@ def points_of(marker: Marker) -> np.ndarray:
     return np.array([(point.x, point.y) for point in marker.points])
 
 
-def markers_of(report: PathReport, header: Header = HEADER) -> list[Marker]:
+def markers_of(report: PlanResponse, header: Header = HEADER) -> list[Marker]:
     """Return the markers of a report as a subscriber gets them."""
     return deserialize_message(serialised_markers(report, header), MarkerArray).markers
 
@@ -216,6 +216,6 @@ def test_markers_are_capped() -> None:
 
 
 def test_markers_are_cleared_after_a_failure() -> None:
-    request = Request(Pose((0.0, 0.0, 0.0)), Pose((1.0, 1.0, 0.0)), 0.0, 'rrt')
-    markers = markers_of(PathReport(Outcome.TIMEOUT, '', request))
+    request = PlanRequest(Pose((0.0, 0.0, 0.0)), Pose((1.0, 1.0, 0.0)), 0.0, 'rrt')
+    markers = markers_of(PlanResponse(Outcome.TIMEOUT, '', request))
     assert [marker.action for marker in markers] == [Marker.DELETEALL]

@@ -12,8 +12,8 @@ from typing import Any
 
 from geometry_msgs.msg import PoseStamped, PoseWithCovarianceStamped
 from hnr_planner.core import ALGORITHMS
-from hnr_planner.ros.outcome_messages import read_outcome
-from hnr_planner.ros.outcomes import Outcome
+from hnr_planner.ros.messages.outcomes import read_outcome
+from hnr_planner.server.outcomes import Outcome
 from nav_msgs.msg import OccupancyGrid
 from nav_msgs.srv import GetMap, GetPlan
 import pytest

@@ -4,20 +4,20 @@ from dataclasses import replace
 from pathlib import Path
 from test.brute_force import path_collisions
 from test.ros.harness import pose
-from test.ros.test_requests import GOAL, RESOLUTION, rooms, SETTINGS, store
+from test.server.test_requests import GOAL, RESOLUTION, rooms, SETTINGS, store
 import threading
 from types import SimpleNamespace
 from typing import Any
 from xml.etree import ElementTree
 
 from hnr_planner.core import ALGORITHMS
-from hnr_planner.ros.answer import answer
-from hnr_planner.ros.nav2_goals import error_of, from_robot_on, request_of
-from hnr_planner.ros.outcomes import Outcome
-from hnr_planner.ros.path_validity import blocked_poses
-from hnr_planner.ros.reports import PathReport
-from hnr_planner.ros.requests import Pose
-from hnr_planner.ros.settings import RULES, Settings
+from hnr_planner.ros.interfaces.nav2_goals import error_of, from_robot_on, request_of
+from hnr_planner.server.outcomes import Outcome
+from hnr_planner.server.path_validity import blocked_poses
+from hnr_planner.server.requests import Pose
+from hnr_planner.server.respond import respond
+from hnr_planner.server.responses import PlanResponse
+from hnr_planner.server.settings import RULES, Settings
 import numpy as np
 import pytest
 import yaml
@@ -35,11 +35,11 @@ def goal_message(start: tuple[float, float] | None = START, planner_id: str = ''
     )
 
 
-def ask(*points: tuple[float, float], message: Any = None, **settings: Any) -> PathReport:
+def ask(*points: tuple[float, float], message: Any = None, **settings: Any) -> PlanResponse:
     """Ask for a path through points and return how that ended."""
     own = replace(SETTINGS, **settings)
     request = request_of(message or goal_message(), [pose(*point) for point in points], own)
-    return answer(request, own, store(rooms()).newest, threading.Event())
+    return respond(request, own, store(rooms()).newest, threading.Event())
 
 
 def test_path_meets_all_poses_in_their_order() -> None:

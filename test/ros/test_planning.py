@@ -15,7 +15,7 @@ from test.ros.harness import (
 from test.ros.rooms import DATA, GOAL, in_map, ORIGIN, RESOLUTION, START
 
 from diagnostic_msgs.msg import DiagnosticArray
-from hnr_planner.ros.outcomes import Outcome
+from hnr_planner.server.outcomes import Outcome
 import numpy as np
 import pytest
 from rclpy.qos import QoSProfile

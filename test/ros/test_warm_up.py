@@ -8,10 +8,10 @@ import sys
 import threading
 
 from hnr_planner.core import ALGORITHMS, warm_up
-from hnr_planner.ros.map_store import Grid, MapStore
-from hnr_planner.ros.answer import answer
-from hnr_planner.ros.requests import Pose, Request
-from hnr_planner.ros.settings import Settings
+from hnr_planner.server.map_store import Grid, MapStore
+from hnr_planner.server.respond import answer
+from hnr_planner.server.requests import Pose, Request
+from hnr_planner.server.settings import Settings
 from numba.core.dispatcher import Dispatcher
 import numpy as np
 

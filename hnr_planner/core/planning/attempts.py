@@ -13,12 +13,12 @@ from typing import NamedTuple, TypeVar
 
 from hnr_planner.core.checks import Floats
 from hnr_planner.core.lengths import path_length
-from hnr_planner.core.planning.limits import Limits
+from hnr_planner.core.planning.limits import Budget
+from hnr_planner.core.planning.planner import PathSearch, Search
+from hnr_planner.core.planning.postprocessing.clearance import increase_clearance, path_cost
+from hnr_planner.core.planning.postprocessing.simplify import shorten
 from hnr_planner.core.planning.request import Request
 from hnr_planner.core.planning.result import FirstSolution, PlannerStatus
-from hnr_planner.core.planning.search import PathSearch, Search
-from hnr_planner.core.planning.simplify import shorten
-from hnr_planner.core.planning.stand_off import path_cost, stand_off
 import numpy as np
 
 SearchType = TypeVar('SearchType', bound=Search)
@@ -54,9 +54,9 @@ class Attempt(NamedTuple):
 def attempt(
     request: Request,
     number: int,
-    limits: Limits,
+    limits: Budget,
     began: float,
-    improving: Limits | None = None,
+    improving: Budget | None = None,
 ) -> Attempt:
     """
     Search once and better what was found.
@@ -79,7 +79,7 @@ def attempt(
 
 
 def _bettered(
-    request: Request, number: int, search: PathSearch, path: Floats, limits: Limits
+    request: Request, number: int, search: PathSearch, path: Floats, limits: Budget
 ) -> tuple[Floats, float]:
     """Return a path (m, dim) shortened and moved away from walls as was asked, and its cost."""
     if request.simplify and not search.taut and len(path) > 2:
@@ -93,7 +93,7 @@ def _cost(bettered: tuple[Floats, float]) -> float:
 
 
 def improve(
-    request: Request, best: Attempt, searches: float, limits: Limits, began: float
+    request: Request, best: Attempt, searches: float, limits: Budget, began: float
 ) -> tuple[Attempt, int]:
     """Look for better paths by searches from fresh seeds: the best, and the transitions of all."""
     iterations, number = best.search.iterations, 1
@@ -106,15 +106,15 @@ def improve(
     return best, iterations
 
 
-def with_clearance(request: Request, path: Floats, limits: Limits) -> Floats:
+def with_clearance(request: Request, path: Floats, limits: Budget) -> Floats:
     """Return a path (m, dim) moved away from walls, where that was asked for."""
     if request.clearance == 0.0:
         return path
-    return stand_off(request.space, path, request.clearance, limits)
+    return increase_clearance(request.space, path, request.clearance, limits)
 
 
 def _search(
-    request: Request, number: int, limits: Limits
+    request: Request, number: int, limits: Budget
 ) -> tuple[PlannerStatus, PathSearch, Floats]:
     """Search for a path (m, dim) that is free in the caller's coordinates."""
 
@@ -132,7 +132,7 @@ def _search(
 def search_until_free(
     start: Callable[[int], SearchType],
     answer_of: Callable[[SearchType], Answer | None],
-    limits: Limits,
+    limits: Budget,
 ) -> tuple[PlannerStatus, SearchType, Answer | None]:
     """
     Search until an answer is free in the caller's coordinates, or a limit is met.

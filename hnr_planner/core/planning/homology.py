@@ -16,7 +16,7 @@ Without islands every path has the signature 0, and may pass everything on any s
 from typing import NamedTuple
 
 from hnr_planner.core.checks import Floats
-from hnr_planner.core.kernels import kernel
+from hnr_planner.core.kernels.kernel import kernel
 import numpy as np
 from numpy.typing import NDArray
 

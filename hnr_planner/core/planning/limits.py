@@ -5,8 +5,8 @@ import math
 import time
 
 from hnr_planner.core.cancellation import Event
+from hnr_planner.core.planning.planner import Search
 from hnr_planner.core.planning.result import PlannerStatus
-from hnr_planner.core.planning.search import Search
 
 #: Transitions in the first batch; later ones last about as long as the bounds below [s].
 FIRST_BATCH = 64
@@ -14,7 +14,7 @@ BATCH_TIME = (0.25e-3, 0.5e-3)
 
 
 @dataclass
-class Limits:
+class Budget:
     """
     Limits on the work for one request, and whether one of them cut it short.
 

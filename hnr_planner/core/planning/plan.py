@@ -14,26 +14,26 @@ from hnr_planner.core.cancellation import Event
 from hnr_planner.core.checks import check_count, check_number
 from hnr_planner.core.errors import RequestError
 from hnr_planner.core.lengths import path_length
-from hnr_planner.core.planning.alternatives import (
+from hnr_planner.core.planning.alternatives.alternatives import (
     check_alternatives,
     compile_alternatives,
     with_alternatives,
 )
 from hnr_planner.core.planning.attempts import Attempt, attempt, improve, with_clearance
-from hnr_planner.core.planning.kinodynamic.plan import check_kinodynamic_request, plan_motion
-from hnr_planner.core.planning.limits import Limits
-from hnr_planner.core.planning.request import check_request, Request, without_search
+from hnr_planner.core.planning.limits import Budget
+from hnr_planner.core.planning.planner import compile_search, Planner
+from hnr_planner.core.planning.postprocessing.clearance import compile_clearance
+from hnr_planner.core.planning.postprocessing.simplify import compile_shorten
+from hnr_planner.core.planning.request import check_request, outcome_without_search, Request
 from hnr_planner.core.planning.result import (
     FirstSolution,
     PlannerStatus,
     PlanResult,
 )
-from hnr_planner.core.planning.search import compile_search, Planner
-from hnr_planner.core.planning.simplify import compile_shorten
-from hnr_planner.core.planning.stand_off import compile_stand_off
 from hnr_planner.core.spaces.primitives import kind_of
 from hnr_planner.core.spaces.space import Space
 from hnr_planner.core.systems.system import System
+from hnr_planner.core.trajectories.plan_trajectory import check_kinodynamic_request, plan_motion
 import numpy as np
 from numpy.typing import ArrayLike
 
@@ -140,8 +140,8 @@ def plan(
     _compile(request, n_paths)
 
     began = time.perf_counter()
-    limits = Limits(began + seconds, transitions, cancel)
-    known = without_search(request)
+    limits = Budget(began + seconds, transitions, cancel)
+    known = outcome_without_search(request)
     if known is not None:
         answer = _answer_without_search(request, *known, limits, began)
     else:
@@ -157,7 +157,7 @@ def _check_for_system(alternatives: int) -> None:
 
 
 def _answer_by_search(
-    request: Request, limits: Limits, improve_seconds: float, improve_searches: int, began: float
+    request: Request, limits: Budget, improve_seconds: float, improve_searches: int, began: float
 ) -> PlanResult:
     """Search, and search again for a shorter path where that is asked for."""
     improving = None
@@ -189,7 +189,7 @@ def _answer_by_search(
 
 
 def _answer_without_search(
-    request: Request, status: PlannerStatus, message: str, limits: Limits, began: float
+    request: Request, status: PlannerStatus, message: str, limits: Budget, began: float
 ) -> PlanResult:
     """Answer a request that needs no search to fail or to succeed."""
     path, length, samples, first = np.empty((0, len(request.start))), math.inf, 0, None
@@ -235,7 +235,7 @@ def _compile(request: Request, n_paths: int) -> None:
     if kinds in _compiled:
         return
     compile_search(request.planner, request.problem)
-    without_search(request)
+    outcome_without_search(request)
     ends = np.stack([request.start, request.start])
     compile_shorten(space, ends)
     space.first_blocked_segment(ends)
@@ -243,5 +243,5 @@ def _compile(request: Request, n_paths: int) -> None:
     if n_paths > 1:
         compile_alternatives(request)
     if request.clearance > 0.0:
-        compile_stand_off(space, ends, request.clearance)
+        compile_clearance(space, ends, request.clearance)
     _compiled.add(kinds)

@@ -5,13 +5,13 @@ from typing import Any
 
 from hnr_planner.core.checks import check_number, check_point, check_seed, Floats
 from hnr_planner.core.errors import RequestError
-from hnr_planner.core.kernels import kernel
-from hnr_planner.core.planning.algorithms import make_planner
+from hnr_planner.core.kernels.kernel import kernel
+from hnr_planner.core.kernels.streams import Stream, stream
+from hnr_planner.core.planning.planner import make_problem, Planner, Problem, reaches_goal
+from hnr_planner.core.planning.registry import make_planner
 from hnr_planner.core.planning.result import PlannerStatus
-from hnr_planner.core.planning.search import make_problem, Planner, Problem, reaches_goal
 from hnr_planner.core.spaces.primitives import component
 from hnr_planner.core.spaces.space import Space
-from hnr_planner.core.streams import Stream, stream
 from numpy.typing import ArrayLike
 
 
@@ -96,7 +96,7 @@ def _check_clearance(space: Space, planner: Planner, simplify: bool) -> float:
     return float(clearance)
 
 
-def without_search(request: Request) -> tuple[PlannerStatus, str] | None:
+def outcome_without_search(request: Request) -> tuple[PlannerStatus, str] | None:
     """
     Say how a request ends that needs no search, and why; None for one that does.
 

@@ -14,10 +14,11 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
-from hnr_planner.core.borrowed import borrowed
 from hnr_planner.core.checks import check_count, check_points, check_seed, Floats
 from hnr_planner.core.errors import RequestError, StuckError
-from hnr_planner.core.kernels import kernel
+from hnr_planner.core.kernels.borrowed import borrowed
+from hnr_planner.core.kernels.kernel import kernel
+from hnr_planner.core.kernels.streams import Stream, stream
 from hnr_planner.core.sampling.walks import (
     make_walk,
     MOVES,
@@ -29,9 +30,8 @@ from hnr_planner.core.sampling.walks import (
     Walk,
     ZERO_CHORDS,
 )
-from hnr_planner.core.spaces.places import memory_size, place, REFRESH, remember
+from hnr_planner.core.spaces.chain_cache import memory_size, open_cache, REFRESH, refresh
 from hnr_planner.core.spaces.space import Space
-from hnr_planner.core.streams import Stream, stream
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -96,11 +96,11 @@ def take_steps(space, walk, chain, u, thin, draws):
     space, chain = borrowed(space), borrowed(chain)
     u, draws = borrowed(u), borrowed(draws)
     x, counts = chain.x, chain.counts
-    here = place(space, x, chain.memory)
+    here = open_cache(space, x, chain.memory)
     for k in range(len(draws)):
         for _ in range(thin):
             if counts[STEPS] % REFRESH == 0:
-                remember(space, here)
+                refresh(space, here)
             counts[STEPS] += 1
             counts[STILL] += 1
             take_step(walk, space, here, u, chain.rng, counts)

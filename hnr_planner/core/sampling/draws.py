@@ -9,9 +9,9 @@ from where the last step led, are in ``walks``.
 
 import math
 
-from hnr_planner.core.kernels import inlined, kernel
+from hnr_planner.core.kernels.kernel import inlined, kernel
+from hnr_planner.core.kernels.streams import draw_normals, uniform
 from hnr_planner.core.spaces.primitives import around, contains
-from hnr_planner.core.streams import draw_normals, uniform
 import numpy as np
 
 #: After so many draws in a row on the boundary the chord holds no other number: the walk stays.

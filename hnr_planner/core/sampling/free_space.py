@@ -13,10 +13,10 @@ from typing import NamedTuple
 from hnr_planner.core.cancellation import Event, in_parts
 from hnr_planner.core.checks import check_count, check_seed, Floats
 from hnr_planner.core.errors import SpaceError
+from hnr_planner.core.kernels.streams import Stream, stream, uniform
 from hnr_planner.core.sampling.chains import new_chain, run_chain
 from hnr_planner.core.sampling.walks import make_walk, Walk
-from hnr_planner.core.spaces.grid import GridSpace
-from hnr_planner.core.streams import Stream, stream, uniform
+from hnr_planner.core.spaces.grid.grid_space import GridSpace
 import numpy as np
 from numpy.typing import NDArray
 

@@ -14,20 +14,20 @@ import math
 from typing import Any, NamedTuple, Protocol
 
 from hnr_planner.core.checks import check_choice, check_positive
-from hnr_planner.core.dispatch import dispatched
 from hnr_planner.core.errors import RequestError
-from hnr_planner.core.kernels import inlined, kernel
+from hnr_planner.core.kernels.dispatch import dispatched
+from hnr_planner.core.kernels.kernel import inlined, kernel
+from hnr_planner.core.kernels.streams import uniform
 from hnr_planner.core.sampling.draws import draw_direction, draw_in_ball, REDRAWS_MAX
-from hnr_planner.core.spaces.places import (
-    chord_at,
+from hnr_planner.core.spaces.chain_cache import (
+    chord_cached,
     move_along,
     move_if_free,
     NO_AXIS,
-    remember,
+    refresh,
 )
-from hnr_planner.core.spaces.primitives import leave
+from hnr_planner.core.spaces.primitives import first_exit
 from hnr_planner.core.spaces.space import Space
-from hnr_planner.core.streams import uniform
 
 #: What is counted of a chain, by column: steps taken; those that moved it; chords shorter than the
 #: space's margin; draws thrown away because they rounded onto the boundary; steps since it moved.
@@ -148,9 +148,9 @@ class BallStep(NamedTuple):
 
 @dispatched
 @inlined
-def take_step(walk: Any, space: Any, place: Any, u: Any, rng: Any, counts: Any) -> None:
+def take_step(walk: Any, space: Any, cache: Any, u: Any, rng: Any, counts: Any) -> None:
     """
-    Move the chain at ``place`` once, or leave it where it is, and count which.
+    Move the chain at ``cache`` once, or leave it where it is, and count which.
 
     ``u`` (dim,) is room for a direction; it is zero before and after a step along an axis.
     """
@@ -159,63 +159,63 @@ def take_step(walk: Any, space: Any, place: Any, u: Any, rng: Any, counts: Any) 
 
 @take_step.register(HitAndRunStep)
 @inlined
-def _step_anywhere(walk, space, place, u, rng, counts):
+def _step_anywhere(walk, space, cache, u, rng, counts):
     draw_direction(rng, u)
-    _draw_on_chord(walk.margin, space, place, u, NO_AXIS, rng, counts)
+    _draw_on_chord(walk.margin, space, cache, u, NO_AXIS, rng, counts)
 
 
 @take_step.register(CoordinateHitAndRunStep)
 @inlined
-def _step_along_an_axis(walk, space, place, u, rng, counts):
+def _step_along_an_axis(walk, space, cache, u, rng, counts):
     axis = math.floor(uniform(rng) * len(u))
     u[axis] = 1.0
-    _draw_on_chord(walk.margin, space, place, u, axis, rng, counts)
+    _draw_on_chord(walk.margin, space, cache, u, axis, rng, counts)
     u[axis] = 0.0
 
 
 @inlined
-def _draw_on_chord(margin, space, place, u, axis, rng, counts):
-    lower, upper = chord_at(space, place, u, axis)
+def _draw_on_chord(margin, space, cache, u, axis, rng, counts):
+    lower, upper = chord_cached(space, cache, u, axis)
     if upper - lower >= margin:
-        if _draw_between(space, place, u, axis, lower, upper, rng, counts):
+        if _draw_between(space, cache, u, axis, lower, upper, rng, counts):
             _count_move(counts)
     else:
-        _draw_on_zero_chord(space, place, u, axis, lower, upper, rng, counts)
+        _draw_on_zero_chord(space, cache, u, axis, lower, upper, rng, counts)
 
 
 @inlined
-def _draw_between(space, place, u, axis, lower, upper, rng, counts):
+def _draw_between(space, cache, u, axis, lower, upper, rng, counts):
     """Move uniformly on the chord; draws that round onto the boundary are drawn again."""
     for _ in range(REDRAWS_MAX):
         s = lower + (upper - lower) * uniform(rng)
-        if lower < s < upper and move_along(space, place, u, axis, s):
+        if lower < s < upper and move_along(space, cache, u, axis, s):
             return True
         counts[REDRAWS] += 1
     return False
 
 
 @kernel
-def _draw_on_zero_chord(space, place, u, axis, lower, upper, rng, counts):
+def _draw_on_zero_chord(space, cache, u, axis, lower, upper, rng, counts):
     """Draw on a chord that may be too short for any number but the point itself."""
     counts[ZERO_CHORDS] += 1
-    before = place.x.copy()
-    _draw_between(space, place, u, axis, lower, upper, rng, counts)
+    before = cache.x.copy()
+    _draw_between(space, cache, u, axis, lower, upper, rng, counts)
     for i in range(len(before)):
-        if place.x[i] != before[i]:
+        if cache.x[i] != before[i]:
             _count_move(counts)
             return
 
 
 @take_step.register(BallStep)
 @inlined
-def _step_in_the_ball(walk, space, place, u, rng, counts):
+def _step_in_the_ball(walk, space, cache, u, rng, counts):
     draw_in_ball(walk.radius, rng, u)
     for i in range(len(u)):
-        place.y[i] = place.x[i] + u[i]
-    if walk.segment_visible and not leave(space, place.x, u, 0.0, 1.0) > 1.0:
+        cache.y[i] = cache.x[i] + u[i]
+    if walk.segment_visible and not first_exit(space, cache.x, u, 0.0, 1.0) > 1.0:
         return
-    if move_if_free(space, place):
-        remember(space, place)
+    if move_if_free(space, cache):
+        refresh(space, cache)
         _count_move(counts)
 
 

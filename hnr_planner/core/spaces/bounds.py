@@ -4,7 +4,7 @@ import math
 
 from hnr_planner.core.checks import Floats
 from hnr_planner.core.errors import SpaceError
-from hnr_planner.core.kernels import kernel
+from hnr_planner.core.kernels.kernel import kernel
 import numpy as np
 
 #: Coordinates must resolve this part of each side, or chords would end in their rounding.

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 from hnr_planner.core.checks import check_point, check_vector, Floats
 from hnr_planner.core.errors import SpaceError
-from hnr_planner.core.kernels import inlined
+from hnr_planner.core.kernels.kernel import inlined
 from hnr_planner.core.spaces.bounds import check_bounds
 from hnr_planner.core.spaces.convex import convex, count, holds, span
 from hnr_planner.core.spaces.space import Space

@@ -11,7 +11,7 @@ moves to the nearest occupied cell; distances are in cells.
 
 import math
 
-from hnr_planner.core.kernels import kernel
+from hnr_planner.core.kernels.kernel import kernel
 import numpy as np
 
 #: The field of distances ends here: what is farther is not told apart [cells].

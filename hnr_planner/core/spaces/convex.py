@@ -12,11 +12,11 @@ from collections.abc import Sequence
 import math
 from typing import Any, TypeVar
 
-from hnr_planner.core.dispatch import dispatched
-from hnr_planner.core.kernels import kernel
+from hnr_planner.core.kernels.dispatch import dispatched
+from hnr_planner.core.kernels.kernel import kernel
 from hnr_planner.core.lengths import norm
 from hnr_planner.core.spaces import primitives
-from hnr_planner.core.spaces.primitives import leave
+from hnr_planner.core.spaces.primitives import first_exit
 import numpy as np
 
 DataType = TypeVar('DataType', bound=type)
@@ -52,8 +52,8 @@ def convex(data_type: DataType) -> DataType:
     for primitive, answer in (
         (primitives.contains, _contains),
         (primitives.touches, _touches),
-        (primitives.leave, _leave),
-        (primitives.enter, _enter),
+        (primitives.first_exit, _first_exit),
+        (primitives.first_entry, _first_entry),
         (primitives.around, _around),
         (primitives.apart, _apart),
     ):
@@ -91,7 +91,7 @@ def _any_holds(space, x, closed):
 
 
 @kernel
-def _leave(space, x, u, t, enough):
+def _first_exit(space, x, u, t, enough):
     """Go to the end of a piece that holds the line at ``t``, and on in those that reach on."""
     s = t
     for k in range(count(space)):
@@ -112,7 +112,7 @@ def _leave(space, x, u, t, enough):
 
 
 @kernel
-def _enter(space, x, u, t):
+def _first_entry(space, x, u, t):
     first = math.inf
     for k in range(count(space)):
         lower, upper = span(space, k, x, u, True)
@@ -125,7 +125,7 @@ def _enter(space, x, u, t):
 def _around(space, x, u, back):
     """Take both ends from one piece; several may reach on from one to the next."""
     if count(space) > 1:
-        return -leave(space, x, back, 0.0, math.inf), leave(space, x, u, 0.0, math.inf)
+        return -first_exit(space, x, back, 0.0, math.inf), first_exit(space, x, u, 0.0, math.inf)
     lower, upper = span(space, 0, x, u, False)
     return (lower, upper) if lower < 0.0 < upper else (0.0, 0.0)
 

@@ -5,15 +5,15 @@ from typing import Any, NamedTuple
 
 from hnr_planner.core.checks import check_point, Floats
 from hnr_planner.core.errors import SpaceError
-from hnr_planner.core.kernels import kernel
+from hnr_planner.core.kernels.kernel import kernel
 from hnr_planner.core.spaces.composed import check_parts, check_same_dim
 from hnr_planner.core.spaces.primitives import (
     apart,
     around,
     component,
     contains,
-    enter,
-    leave,
+    first_entry,
+    first_exit,
     touches,
 )
 from hnr_planner.core.spaces.space import Space
@@ -97,23 +97,23 @@ def _touches(difference, x):
     return touches(difference.base, x) and not contains(difference.removed, x)
 
 
-@leave.register(DifferenceData)
+@first_exit.register(DifferenceData)
 @kernel
-def _leave(difference, x, u, t, enough):
-    end = leave(difference.base, x, u, t, enough)
-    return min(end, enter(difference.removed, x, u, t)) if end > t else t
+def _first_exit(difference, x, u, t, enough):
+    end = first_exit(difference.base, x, u, t, enough)
+    return min(end, first_entry(difference.removed, x, u, t)) if end > t else t
 
 
-@enter.register(DifferenceData)
+@first_entry.register(DifferenceData)
 @kernel
-def _enter(difference, x, u, t):
+def _first_entry(difference, x, u, t):
     """Enter the base, and leave what is removed, until neither moves the line on."""
-    s = enter(difference.base, x, u, t)
+    s = first_entry(difference.base, x, u, t)
     while s < math.inf:
-        out = leave(difference.removed, x, u, s, math.inf)
+        out = first_exit(difference.removed, x, u, s, math.inf)
         if out == s:
             break
-        s = enter(difference.base, x, u, out)
+        s = first_entry(difference.base, x, u, out)
     return s
 
 

@@ -6,11 +6,11 @@ from typing import Any, NamedTuple
 
 from hnr_planner.core.checks import check_real, check_vector, Floats
 from hnr_planner.core.errors import SpaceError
-from hnr_planner.core.kernels import kernel
+from hnr_planner.core.kernels.kernel import kernel
 from hnr_planner.core.lengths import norm
 from hnr_planner.core.spaces.bounds import check_bounds, within
 from hnr_planner.core.spaces.callbacks import address, ask, callback, OracleError
-from hnr_planner.core.spaces.primitives import contains, enter, leave, touches
+from hnr_planner.core.spaces.primitives import contains, first_entry, first_exit, touches
 from hnr_planner.core.spaces.space import MARGIN, Space
 from numba import njit
 from numba.core.dispatcher import Dispatcher
@@ -198,9 +198,9 @@ def _contains(oracle, x):
     return _is_in(oracle, x, x, 0.0, np.empty(len(x) + 1))
 
 
-@leave.register(OracleData)
+@first_exit.register(OracleData)
 @kernel
-def _leave(oracle, x, u, t, enough):
+def _first_exit(oracle, x, u, t, enough):
     room = np.empty(len(x) + 1)
     if not _is_in(oracle, x, u, t, room):
         return t
@@ -216,9 +216,9 @@ def _leave(oracle, x, u, t, enough):
     return before
 
 
-@enter.register(OracleData)
+@first_entry.register(OracleData)
 @kernel
-def _enter(oracle, x, u, t):
+def _first_entry(oracle, x, u, t):
     room = np.empty(len(x) + 1)
     if _is_in(oracle, x, u, t, room):
         return t

@@ -11,8 +11,8 @@ closed, so that free space stays open.
 import math
 from typing import Any
 
-from hnr_planner.core.dispatch import dispatched
-from hnr_planner.core.kernels import kernel
+from hnr_planner.core.kernels.dispatch import dispatched
+from hnr_planner.core.kernels.kernel import kernel
 import numpy as np
 
 
@@ -32,7 +32,7 @@ def touches(space: Any, x: Any) -> bool:
 
 @dispatched
 @kernel
-def leave(space: Any, x: Any, u: Any, t: float, enough: float) -> float:
+def first_exit(space: Any, x: Any, u: Any, t: float, enough: float) -> float:
     """
     Return the first parameter ``s >= t`` at which the line ``x + s u`` leaves ``space``.
 
@@ -44,7 +44,7 @@ def leave(space: Any, x: Any, u: Any, t: float, enough: float) -> float:
 
 @dispatched
 @kernel
-def enter(space: Any, x: Any, u: Any, t: float) -> float:
+def first_entry(space: Any, x: Any, u: Any, t: float) -> float:
     """Return the first parameter ``s >= t`` at which the line touches ``space``; inf for never."""
     raise NotImplementedError
 
@@ -57,7 +57,7 @@ def around(space: Any, x: Any, u: Any, back: Any) -> tuple[float, float]:
 
     For a free point ``x``; ``back`` is ``-u``.
     """
-    return -leave(space, x, back, 0.0, math.inf), leave(space, x, u, 0.0, math.inf)
+    return -first_exit(space, x, back, 0.0, math.inf), first_exit(space, x, u, 0.0, math.inf)
 
 
 @dispatched
@@ -68,7 +68,7 @@ def apart(space: Any, x: Any, u: Any, back: Any) -> tuple[float, float]:
 
     For a point ``x`` that does not; the ends may be infinite, and ``back`` is ``-u``.
     """
-    return -enter(space, x, back, 0.0), enter(space, x, u, 0.0)
+    return -first_entry(space, x, back, 0.0), first_entry(space, x, u, 0.0)
 
 
 @dispatched
@@ -85,12 +85,12 @@ def component(space: Any, x: Any) -> int:
 
 @dispatched
 @kernel
-def sees(space: Any, a: Any, b: Any) -> bool:
+def segment_is_free(space: Any, a: Any, b: Any) -> bool:
     """Say whether the closed segment from ``a`` to ``b`` is free: the chord goes beyond ``b``."""
     if not (contains(space, a) and contains(space, b)):
         return False
     u = b - a
-    return not u.any() or leave(space, a, u, 0.0, 1.0) > 1.0
+    return not u.any() or first_exit(space, a, u, 0.0, 1.0) > 1.0
 
 
 def kind_of(space: Any) -> tuple[Any, ...]:
@@ -136,14 +136,14 @@ def chord(space, x, u):
 
 @kernel
 def sees_from(space, a, b):
-    """Say whether the closed segment from ``a`` to ``b`` is free: ``sees`` for Python."""
-    return sees(space, a, b)
+    """Say whether the closed segment from ``a`` to ``b`` is free, for Python."""
+    return segment_is_free(space, a, b)
 
 
 @kernel
 def first_blocked_segment(space, points):
     """Index of the first segment of a path (m, dim) that is not free; -1 when all are."""
     for k in range(len(points) - 1):
-        if not sees(space, points[k], points[k + 1]):
+        if not segment_is_free(space, points[k], points[k + 1]):
             return k
     return -1

@@ -5,13 +5,13 @@ import math
 from typing import Any, NamedTuple
 
 from hnr_planner.core.checks import check_point, Floats
-from hnr_planner.core.kernels import kernel
+from hnr_planner.core.kernels.kernel import kernel
 from hnr_planner.core.spaces.composed import check_parts
 from hnr_planner.core.spaces.primitives import (
     component,
     contains,
-    enter,
-    leave,
+    first_entry,
+    first_exit,
     touches,
 )
 from hnr_planner.core.spaces.space import Space
@@ -108,26 +108,26 @@ def _touches(product, x):
     return touches(product.one, x[:k]) and touches(product.other, x[k:])
 
 
-@leave.register(ProductData)
+@first_exit.register(ProductData)
 @kernel
-def _leave(product, x, u, t, enough):
+def _first_exit(product, x, u, t, enough):
     """Leave the factor that is left first."""
     k, end = product.split, math.inf
     # A line may stand still in one of the factors.
     if u[:k].any():
-        end = leave(product.one, x[:k], u[:k], t, enough)
+        end = first_exit(product.one, x[:k], u[:k], t, enough)
     elif not contains(product.one, x[:k]):
         return t
     if u[k:].any():
-        end = min(end, leave(product.other, x[k:], u[k:], t, enough))
+        end = min(end, first_exit(product.other, x[k:], u[k:], t, enough))
     elif not contains(product.other, x[k:]):
         return t
     return end
 
 
-@enter.register(ProductData)
+@first_entry.register(ProductData)
 @kernel
-def _enter(product, x, u, t):
+def _first_entry(product, x, u, t):
     """Go on to where the other factor is entered, until both are at once."""
     k = product.split
     moves, other_moves = u[:k].any(), u[k:].any()
@@ -139,9 +139,9 @@ def _enter(product, x, u, t):
     while before < s < math.inf:
         before = s
         if moves:
-            s = enter(product.one, x[:k], u[:k], s)
+            s = first_entry(product.one, x[:k], u[:k], s)
         if other_moves and s < math.inf:
-            s = enter(product.other, x[k:], u[k:], s)
+            s = first_entry(product.other, x[k:], u[k:], s)
     return s
 
 

@@ -5,12 +5,12 @@ from typing import NamedTuple
 
 from hnr_planner.core.checks import check_point, check_points, check_real, Floats
 from hnr_planner.core.errors import SpaceError
-from hnr_planner.core.kernels import kernel
+from hnr_planner.core.kernels.kernel import kernel
 from hnr_planner.core.spaces.ball import BallSpace
 from hnr_planner.core.spaces.bounds import check_bounds, within
 from hnr_planner.core.spaces.box import BoxSpace
-from hnr_planner.core.spaces.polynomials import next_change, value
-from hnr_planner.core.spaces.primitives import contains, enter, leave, touches
+from hnr_planner.core.spaces.curves.polynomials import next_change, value
+from hnr_planner.core.spaces.primitives import contains, first_entry, first_exit, touches
 from hnr_planner.core.spaces.space import Space
 import numpy as np
 from numpy.typing import ArrayLike
@@ -207,9 +207,9 @@ def _holds(sheared, x, closed):
     return True
 
 
-@leave.register(ShearedData)
+@first_exit.register(ShearedData)
 @kernel
-def _leave(sheared, x, u, t, enough):
+def _first_exit(sheared, x, u, t, enough):
     """Leave at the first inequality that fails."""
     _, last = within(sheared.begin, sheared.end, x, u)
     if t >= last:
@@ -223,9 +223,9 @@ def _leave(sheared, x, u, t, enough):
     return s
 
 
-@enter.register(ShearedData)
+@first_entry.register(ShearedData)
 @kernel
-def _enter(sheared, x, u, t):
+def _first_entry(sheared, x, u, t):
     """Go on to where an inequality holds that does not, until all hold at once."""
     first, last = within(sheared.begin, sheared.end, x, u)
     coefficients, rounding = np.empty(5), sheared.rounding

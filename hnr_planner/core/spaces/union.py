@@ -5,14 +5,14 @@ from functools import reduce
 from typing import Any, NamedTuple
 
 from hnr_planner.core.checks import Floats
-from hnr_planner.core.kernels import kernel
+from hnr_planner.core.kernels.kernel import kernel
 from hnr_planner.core.lengths import norm
 from hnr_planner.core.spaces.composed import check_parts, check_same_dim
 from hnr_planner.core.spaces.convex import is_convex, pack
 from hnr_planner.core.spaces.primitives import (
     contains,
-    enter,
-    leave,
+    first_entry,
+    first_exit,
     touches,
 )
 from hnr_planner.core.spaces.space import Space
@@ -110,11 +110,11 @@ def _touches(union, x):
     return touches(union.one, x) or touches(union.other, x)
 
 
-@leave.register(UnionData)
+@first_exit.register(UnionData)
 @kernel
-def _leave(union, x, u, t, enough):
+def _first_exit(union, x, u, t, enough):
     """Go to the end of a part that holds the line at ``t``, and on in one that reaches on."""
-    s = max(leave(union.one, x, u, t, enough), leave(union.other, x, u, t, enough))
+    s = max(first_exit(union.one, x, u, t, enough), first_exit(union.other, x, u, t, enough))
     if s == t:
         return t
     gap = union.gap / norm(u)
@@ -122,15 +122,15 @@ def _leave(union, x, u, t, enough):
     while before < s <= enough:
         before, probe = s, s + gap
         for end in (
-            leave(union.one, x, u, probe, enough),
-            leave(union.other, x, u, probe, enough),
+            first_exit(union.one, x, u, probe, enough),
+            first_exit(union.other, x, u, probe, enough),
         ):
             if end > probe:
                 s = max(s, end)
     return s
 
 
-@enter.register(UnionData)
+@first_entry.register(UnionData)
 @kernel
-def _enter(union, x, u, t):
-    return min(enter(union.one, x, u, t), enter(union.other, x, u, t))
+def _first_entry(union, x, u, t):
+    return min(first_entry(union.one, x, u, t), first_entry(union.other, x, u, t))

@@ -11,8 +11,8 @@ from typing import ClassVar, NamedTuple
 
 from hnr_planner.core.checks import check_number, check_point, Floats
 from hnr_planner.core.errors import RequestError
-from hnr_planner.core.kernels import kernel
-from hnr_planner.core.spaces.curves import Arc, at, coordinate, leave_curve
+from hnr_planner.core.kernels.kernel import kernel
+from hnr_planner.core.spaces.curves.curve import Arc, at, coordinate, first_exit_on_curve
 from hnr_planner.core.spaces.space import Space
 from hnr_planner.core.systems.limits import check_limit
 from hnr_planner.core.systems.primitives import (
@@ -186,7 +186,7 @@ def _one_way(space, state, control, duration):
     way = duration * (state[SPEED] + duration * control[0] / 2.0)
     heading = state[HEADING] if way >= 0.0 else state[HEADING] + math.pi
     curvature = math.copysign(control[1], control[1] * way)
-    left = leave_curve(space, Arc(state[:HEADING], heading, curvature), abs(way))
+    left = first_exit_on_curve(space, Arc(state[:HEADING], heading, curvature), abs(way))
     if left > abs(way):
         return math.inf
     speed, acceleration = abs(state[SPEED]), math.copysign(control[0], control[0] * way)

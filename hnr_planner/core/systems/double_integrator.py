@@ -11,9 +11,9 @@ from typing import NamedTuple
 
 from hnr_planner.core.checks import check_count, check_number, check_point, Floats
 from hnr_planner.core.errors import RequestError
-from hnr_planner.core.kernels import kernel
+from hnr_planner.core.kernels.kernel import kernel
 from hnr_planner.core.lengths import norm
-from hnr_planner.core.spaces.curves import leave_curve, Parabola
+from hnr_planner.core.spaces.curves.curve import first_exit_on_curve, Parabola
 from hnr_planner.core.spaces.space import Space
 from hnr_planner.core.systems.limits import check_limit
 from hnr_planner.core.systems.primitives import (
@@ -164,7 +164,7 @@ def _move(system, state, control, duration, end):
 @kernel
 def _contact(system, space, state, control, duration):
     dim = len(control)
-    return leave_curve(space, Parabola(state[:dim], state[dim:], control), duration)
+    return first_exit_on_curve(space, Parabola(state[:dim], state[dim:], control), duration)
 
 
 @steer.register(DoubleIntegratorData)

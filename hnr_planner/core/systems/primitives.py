@@ -7,9 +7,9 @@ kernel of its own for each primitive. Its states are arrays, position first.
 
 from typing import Any
 
-from hnr_planner.core.borrowed import borrowed
-from hnr_planner.core.dispatch import dispatched
-from hnr_planner.core.kernels import kernel
+from hnr_planner.core.kernels.borrowed import borrowed
+from hnr_planner.core.kernels.dispatch import dispatched
+from hnr_planner.core.kernels.kernel import kernel
 
 
 @dispatched

@@ -9,10 +9,10 @@ chords. Its measure on lines is invariant, which makes the flow symmetric, and e
 import math
 from typing import NamedTuple
 
-from hnr_planner.core.borrowed import borrowed
 from hnr_planner.core.checks import check_count, Floats
 from hnr_planner.core.errors import RequestError
-from hnr_planner.core.kernels import kernel
+from hnr_planner.core.kernels.borrowed import borrowed
+from hnr_planner.core.kernels.kernel import kernel
 from hnr_planner.core.spaces.space import Space
 from hnr_planner.core.theory.rays import lengths_within, pieces
 import numpy as np

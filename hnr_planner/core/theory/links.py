@@ -13,9 +13,9 @@ from typing import Any, NamedTuple
 
 from hnr_planner.core.checks import check_count, Floats
 from hnr_planner.core.errors import RequestError
-from hnr_planner.core.kernels import kernel
+from hnr_planner.core.kernels.kernel import kernel
 from hnr_planner.core.spaces import GridSpace, PolygonSpace
-from hnr_planner.core.spaces.grid_cells import Bools
+from hnr_planner.core.spaces.grid.cells import Bools
 import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_array

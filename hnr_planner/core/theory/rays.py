@@ -2,11 +2,11 @@
 
 import math
 
-from hnr_planner.core.borrowed import borrowed
 from hnr_planner.core.checks import Floats
 from hnr_planner.core.errors import RequestError
-from hnr_planner.core.kernels import kernel
-from hnr_planner.core.spaces.primitives import contains, enter, leave
+from hnr_planner.core.kernels.borrowed import borrowed
+from hnr_planner.core.kernels.kernel import kernel
+from hnr_planner.core.spaces.primitives import contains, first_entry, first_exit
 from hnr_planner.core.spaces.space import Space
 from hnr_planner.core.theory.corners import corners
 import numpy as np
@@ -169,7 +169,7 @@ def _reach(space, points, directions):
     ends = np.zeros(len(points))
     for k in range(len(points)):
         if contains(space, points[k]):
-            ends[k] = leave(space, points[k], directions[k], 0.0, math.inf)
+            ends[k] = first_exit(space, points[k], directions[k], 0.0, math.inf)
     return ends
 
 
@@ -183,11 +183,11 @@ def _pieces(space, points, directions, lower, upper):
         x, u = points[k], directions[k]
         s, probe = lower[k], PROBE * (upper[k] - lower[k])
         while s < upper[k]:
-            begin = enter(space, x, u, s)
+            begin = first_entry(space, x, u, s)
             if begin >= upper[k]:
                 break
             s = begin + probe
-            end = leave(space, x, u, s, math.inf)
+            end = first_exit(space, x, u, s, math.inf)
             if end > s:
                 s, probe = end, PROBE * (upper[k] - lower[k])
                 line.append(k)

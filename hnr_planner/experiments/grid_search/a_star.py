@@ -2,7 +2,7 @@
 
 from heapq import heappop, heappush
 
-from hnr_planner.core.kernels import kernel
+from hnr_planner.core.kernels.kernel import kernel
 from hnr_planner.experiments.grid_search.cells import cell_of, DIAGONAL, may_step, STEPS, trace
 import numpy as np
 

@@ -2,7 +2,7 @@
 
 import math
 
-from hnr_planner.core.kernels import kernel
+from hnr_planner.core.kernels.kernel import kernel
 import numpy as np
 
 DIAGONAL = math.sqrt(2.0)

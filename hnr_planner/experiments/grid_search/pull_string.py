@@ -1,7 +1,7 @@
 """String pulling: what is left of a path when vertices that are not needed go."""
 
-from hnr_planner.core.kernels import kernel
-from hnr_planner.core.spaces.primitives import sees
+from hnr_planner.core.kernels.kernel import kernel
+from hnr_planner.core.spaces.primitives import segment_is_free
 import numpy as np
 
 
@@ -12,7 +12,7 @@ def pull_string(grid, path):
     kept[0] = path[0]
     n_kept = 1
     for k in range(2, len(path)):
-        if not sees(grid, kept[n_kept - 1], path[k]):
+        if not segment_is_free(grid, kept[n_kept - 1], path[k]):
             kept[n_kept] = path[k - 1]
             n_kept += 1
     kept[n_kept] = path[-1]

@@ -3,8 +3,8 @@
 from heapq import heappop, heappush
 import math
 
-from hnr_planner.core.kernels import kernel
-from hnr_planner.core.spaces.primitives import sees
+from hnr_planner.core.kernels.kernel import kernel
+from hnr_planner.core.spaces.primitives import segment_is_free
 from hnr_planner.experiments.grid_search.cells import cell_of, may_step, STEPS, trace
 import numpy as np
 
@@ -35,7 +35,7 @@ def theta_star(grid, start, goal):
             length = cost[before] + _distance(before, near, columns)
             if length >= cost[near]:
                 continue  # and so is the way by this cell: no need to look
-            if not sees(grid, _centre(before, columns), _centre(near, columns)):
+            if not segment_is_free(grid, _centre(before, columns), _centre(near, columns)):
                 before = cell
                 length = cost[before] + _distance(before, near, columns)
             if length < cost[near]:

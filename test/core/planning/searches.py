@@ -3,9 +3,9 @@
 from typing import Any
 
 from hnr_planner.core import GridSpace
-from hnr_planner.core.planning.algorithms import make_planner
-from hnr_planner.core.planning.search import make_problem
-from hnr_planner.core.streams import stream
+from hnr_planner.core.kernels.streams import stream
+from hnr_planner.core.planning.planner import make_problem
+from hnr_planner.core.planning.registry import make_planner
 import numpy as np
 from numpy.typing import NDArray
 

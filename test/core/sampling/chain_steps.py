@@ -4,11 +4,11 @@ from collections.abc import Callable
 
 from hnr_planner.core import Space
 from hnr_planner.core.checks import Floats
-from hnr_planner.core.kernels import kernel
+from hnr_planner.core.kernels.kernel import kernel
+from hnr_planner.core.kernels.streams import stream
 from hnr_planner.core.sampling.chains import new_chain
 from hnr_planner.core.sampling.walks import make_walk, take_step, Walk
-from hnr_planner.core.spaces.places import place, remember
-from hnr_planner.core.streams import stream
+from hnr_planner.core.spaces.chain_cache import open_cache, refresh
 import numpy as np
 
 Step = Callable[[Floats, np.random.Generator], Floats]
@@ -31,7 +31,7 @@ def step_of(walk: str | Walk, space: Space, n_steps: int = 1) -> Step:
 @kernel
 def _step_from_each(space, walk, points, chain, u, n_steps):
     for k in range(len(points)):
-        here = place(space, points[k], chain.memory)
-        remember(space, here)
+        here = open_cache(space, points[k], chain.memory)
+        refresh(space, here)
         for _ in range(n_steps):
             take_step(walk, space, here, u, chain.rng, chain.counts)

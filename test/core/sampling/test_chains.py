@@ -20,11 +20,16 @@ from hnr_planner.core import (
     walk_on,
     WALKS,
 )
-from hnr_planner.core.kernels import interpreted
+from hnr_planner.core.kernels.kernel import interpreted
+from hnr_planner.core.kernels.streams import stream
 from hnr_planner.core.sampling.chains import new_chain, take_steps
 from hnr_planner.core.sampling.walks import make_walk
-from hnr_planner.core.spaces.places import chord_at, NO_AXIS, place, REFRESH, remember
-from hnr_planner.core.streams import stream
+from hnr_planner.core.spaces.chain_cache import (
+    chord_cached,
+    open_cache,
+    REFRESH,
+    refresh,
+)
 import numpy as np
 import pytest
 
@@ -83,7 +88,7 @@ def test_compiled_and_interpreted_chains_are_the_same(space, start, walk):
     for steps in (take_steps, interpreted(take_steps)):
         chain = new_chain(space, space.to_kernel(np.array(start)), stream(5))
         chain.counts[0] = REFRESH - 60
-        remember(space.data, place(space.data, chain.x, chain.memory))
+        refresh(space.data, open_cache(space.data, chain.x, chain.memory))
         draws, u = np.zeros((40, space.dim)), np.zeros(space.dim)
         with np.errstate(over='ignore', divide='ignore'):  # as compiled code does
             steps(space.data, make_walk(walk).compiled(space), chain, u, 3, draws)
@@ -147,11 +152,11 @@ def test_chords_from_memory_are_those_of_the_space(name: str):
     space, start = SPACES[name]
     rng = np.random.default_rng(6)
     for point in sample(space, start, 50, thin=5, seed=4)[0]:
-        here = place(space.data, point, np.zeros(space.dim + 3 * len(space.data.offsets)))
-        remember(space.data, here)
+        here = open_cache(space.data, point, np.zeros(space.dim + 3 * len(space.data.offsets)))
+        refresh(space.data, here)
         axis = int(rng.integers(space.dim))
         for u, which in ((rng.normal(size=space.dim), NO_AXIS), (np.eye(space.dim)[axis], axis)):
-            assert chord_at(space.data, here, u, which) == pytest.approx(
+            assert chord_cached(space.data, here, u, which) == pytest.approx(
                 space.chord(point, u), rel=1e-12
             )
 

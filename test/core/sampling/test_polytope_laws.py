@@ -8,11 +8,11 @@ the seeds drawn anew, one run in a hundred thousand would fail.
 from test.core.sampling.chain_steps import step_of
 from test.core.sampling.test_chains import polytope, simplex
 
-from hnr_planner.core.kernels import kernel
+from hnr_planner.core.kernels.kernel import kernel
+from hnr_planner.core.kernels.streams import stream
 from hnr_planner.core.sampling.chains import new_chain
 from hnr_planner.core.sampling.walks import make_walk, take_step
-from hnr_planner.core.spaces.places import place, remember
-from hnr_planner.core.streams import stream
+from hnr_planner.core.spaces.chain_cache import open_cache, refresh
 import numpy as np
 import pytest
 from scipy import stats
@@ -71,8 +71,8 @@ def test_steps_keep_the_uniform_law(walk: str):
 @kernel
 def _step_from_half_of_memory(space, walk, points, chain, u):
     for k in range(len(points)):
-        here = place(space, points[k], chain.memory)
-        remember(space, here)
+        here = open_cache(space, points[k], chain.memory)
+        refresh(space, here)
         here.slacks[0] *= 0.5
         take_step(walk, space, here, u, chain.rng, chain.counts)
 

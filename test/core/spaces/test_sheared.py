@@ -1,7 +1,7 @@
 """Balls and boxes under a shear: the map, its constants, and lines that touch."""
 
 from hnr_planner.core import BallSpace, BoxSpace, ShearedSpace, SpaceError
-from hnr_planner.core.spaces.polynomials import next_change
+from hnr_planner.core.spaces.curves.polynomials import next_change
 import numpy as np
 import pytest
 

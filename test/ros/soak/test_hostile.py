@@ -9,7 +9,7 @@ from test.ros.soak.effort import EFFORT
 from test.ros.soak.hostile import Generator
 from test.ros.soak.judge import SOLVED, World
 
-from hnr_planner.ros.map_messages import grid_from_message
+from hnr_planner.ros.messages.maps import grid_from_message
 from nav_msgs.msg import OccupancyGrid
 from nav_msgs.msg import Path as PathMessage
 from nav_msgs.srv import GetPlan

@@ -7,11 +7,11 @@ are found by visibility alone, so in any space: in the plane they are the corner
 in more dimensions points on their edges.
 """
 
-from hnr_planner.core.borrowed import borrowed
-from hnr_planner.core.kernels import kernel
+from hnr_planner.core.kernels.borrowed import borrowed
+from hnr_planner.core.kernels.kernel import kernel
 from hnr_planner.core.lengths import norm
 from hnr_planner.core.sampling.draws import hit_and_run_step
-from hnr_planner.core.spaces.primitives import contains, leave, sees
+from hnr_planner.core.spaces.primitives import contains, first_exit, segment_is_free
 import numpy as np
 
 #: Corners between two points at most: the rest of a longer bend is left to others.
@@ -53,10 +53,12 @@ def _bend(space, a, x, b, away, corners):
     """Pull the way a-x-b taut and write its corners, from b to a; return how many."""
     corner = b
     for n in range(IN_A_BEND):
-        if sees(space, a, corner):
+        if segment_is_free(space, a, corner):
             return n
         x = _touch(space, a, x, corner, away, corners[n])
-        if not (sees(space, x, corners[n]) and sees(space, corners[n], corner)):
+        if not (
+            segment_is_free(space, x, corners[n]) and segment_is_free(space, corners[n], corner)
+        ):
             return n
         corner = corners[n]
     return IN_A_BEND
@@ -74,13 +76,13 @@ def _touch(space, a, x, b, away, corner):
     free, middle, blocked = 0.0, 0.5, 1.0
     # To the last bit: a line that runs along a wall touches it anywhere but at its end.
     while free < middle < blocked:
-        if sees(space, b, x + middle * way):
+        if segment_is_free(space, b, x + middle * way):
             free = middle
         else:
             blocked = middle
         middle = (free + blocked) / 2.0
     last = x + free * way
-    s = min(leave(space, b, x + blocked * way - b, 0.0, 1.0), 1.0)
+    s = min(first_exit(space, b, x + blocked * way - b, 0.0, 1.0), 1.0)
     corner[:] = b + s * (last - b)
     _step_aside(space, corner, away)
     return last
@@ -111,7 +113,7 @@ def find_opening(space, points, looks, known, lower, upper):
             if (looks[point, k] == known[point, k]).all():
                 continue
             way = looks[point, k] - points[point]
-            s = leave(space, points[point], way, 0.0, 1.0)
+            s = first_exit(space, points[point], way, 0.0, 1.0)
             if s < 1.0:
                 for i in range(len(way)):
                     lower[i] = min(lower[i], points[point, i] + s * way[i])

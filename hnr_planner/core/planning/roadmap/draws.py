@@ -1,15 +1,15 @@
 """Uniform draws of a space, by Hit-and-Run steps; after a change of the space they are mended."""
 
-from hnr_planner.core.borrowed import borrowed
 from hnr_planner.core.cancellation import Event, in_parts
 from hnr_planner.core.checks import Floats
-from hnr_planner.core.kernels import kernel
-from hnr_planner.core.planning.roadmap.knowledge import Knowledge
-from hnr_planner.core.planning.rrt import draw_in_box
+from hnr_planner.core.kernels.borrowed import borrowed
+from hnr_planner.core.kernels.kernel import kernel
+from hnr_planner.core.kernels.streams import stream
+from hnr_planner.core.planning.planners.rrt import draw_in_box
+from hnr_planner.core.planning.roadmap.data import Knowledge
 from hnr_planner.core.sampling.draws import hit_and_run_step
 from hnr_planner.core.spaces.primitives import are_free, contains
 from hnr_planner.core.spaces.space import Space
-from hnr_planner.core.streams import stream
 import numpy as np
 from numpy.typing import NDArray
 

@@ -9,12 +9,12 @@ two coordinates.
 import math
 from typing import NamedTuple
 
-from hnr_planner.core.borrowed import borrowed
 from hnr_planner.core.checks import Floats
-from hnr_planner.core.kernels import kernel
+from hnr_planner.core.kernels.borrowed import borrowed
+from hnr_planner.core.kernels.kernel import kernel
 from hnr_planner.core.lengths import norm
 from hnr_planner.core.sampling.draws import hit_and_run_step
-from hnr_planner.core.spaces.primitives import contains, sees
+from hnr_planner.core.spaces.primitives import contains, segment_is_free
 from hnr_planner.core.trees import NONE
 import numpy as np
 from numpy.typing import NDArray
@@ -104,7 +104,7 @@ def arrive(space, draws, edges, sources, distance, is_exit):
                 node = edges.to[edge]
                 if from_source[node] + edges.length[edge] < shortest:
                     shortest, exit_node = from_source[node] + edges.length[edge], node
-            if exit_node != NONE and not sees(space, draws[source], draws[draw]):
+            if exit_node != NONE and not segment_is_free(space, draws[source], draws[draw]):
                 is_exit[draw, exit_node] = True
 
 
@@ -136,7 +136,11 @@ def _look_at(space, x, nodes, candidates, leaves, is_new, seen, distance, n):
     for node in candidates:
         if is_new[node]:
             is_new[node] = False
-            if sees(space, x, nodes[node]) if leaves else sees(space, nodes[node], x):
+            if (
+                segment_is_free(space, x, nodes[node])
+                if leaves
+                else segment_is_free(space, nodes[node], x)
+            ):
                 seen[n], distance[n] = node, norm(nodes[node] - x)
                 n += 1
     return n

@@ -11,19 +11,19 @@ from dataclasses import dataclass
 import math
 from typing import ClassVar
 
-from hnr_planner.core.borrowed import borrowed
 from hnr_planner.core.cancellation import Event
 from hnr_planner.core.checks import check_seed, Floats
 from hnr_planner.core.errors import RequestError
-from hnr_planner.core.kernels import kernel
-from hnr_planner.core.planning.hit_and_run_connect import HitAndRunConnect
+from hnr_planner.core.kernels.borrowed import borrowed
+from hnr_planner.core.kernels.kernel import kernel
+from hnr_planner.core.kernels.streams import Stream, stream
+from hnr_planner.core.planning.planner import compile_search, make_problem, PathSearch, Problem
+from hnr_planner.core.planning.planners.hit_and_run_connect import HitAndRunConnect
+from hnr_planner.core.planning.roadmap.build import learn, N_DRAWS
+from hnr_planner.core.planning.roadmap.data import Knowledge, nothing_known
 from hnr_planner.core.planning.roadmap.exits import nodes_seen, way_to_node
-from hnr_planner.core.planning.roadmap.knowledge import Knowledge, nothing_known
-from hnr_planner.core.planning.roadmap.learning import learn, N_DRAWS
-from hnr_planner.core.planning.search import compile_search, make_problem, PathSearch, Problem
-from hnr_planner.core.spaces.primitives import sees
+from hnr_planner.core.spaces.primitives import segment_is_free
 from hnr_planner.core.spaces.space import Space
-from hnr_planner.core.streams import Stream, stream
 from hnr_planner.core.trees import branch, NONE
 import numpy as np
 from numpy.typing import NDArray
@@ -222,8 +222,8 @@ def shortest_path(space, nodes, ways, exits, ahead, back):
     if first == NONE:
         return np.empty((0, nodes.shape[1]))
     # What the exits of the draws around do not tell: the way may be joined further on.
-    while first != last and sees(space, ahead[-1], nodes[ways.previous[last, first]]):
+    while first != last and segment_is_free(space, ahead[-1], nodes[ways.previous[last, first]]):
         first = ways.previous[last, first]
-    while first != last and sees(space, nodes[ways.previous[first, last]], back[-1]):
+    while first != last and segment_is_free(space, nodes[ways.previous[first, last]], back[-1]):
         last = ways.previous[first, last]
     return np.concatenate((ahead, branch(nodes, ways.previous[first], last), back[::-1]))

@@ -15,8 +15,8 @@ from hnr_planner.core import (
     RequestError,
     Roadmap,
 )
-from hnr_planner.core.planning.roadmap.knowledge import nothing_known
-from hnr_planner.core.planning.roadmap.learning import learn
+from hnr_planner.core.planning.roadmap.build import learn
+from hnr_planner.core.planning.roadmap.data import nothing_known
 from hnr_planner.maps import spiral
 from hypothesis import given, settings
 from hypothesis import strategies as st

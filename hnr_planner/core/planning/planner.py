@@ -1,0 +1,163 @@
+"""
+What a planner is: a value that starts searches, which advance by counts and know no clock.
+
+A planner is a frozen dataclass whose fields are its settings. Its ``start`` gives a search, whose
+``advance(n)`` handles at most ``n`` further transitions. Batches may be of any size: the same
+problem and generator give the same samples and the same path to the last bit. A start that reaches
+the goal as it is needs no search, and is given none. All arrays are in the space's kernel frame.
+"""
+
+from typing import Any, NamedTuple, Protocol
+
+from hnr_planner.core.checks import Floats
+from hnr_planner.core.kernels.kernel import kernel
+from hnr_planner.core.kernels.streams import Stream, stream
+from hnr_planner.core.spaces.primitives import segment_is_free
+from hnr_planner.core.spaces.space import Space
+import numpy as np
+from numpy.typing import NDArray
+
+#: How many times longer a table becomes when it is full.
+GROWTH = 8
+
+
+class Problem(NamedTuple):
+    """
+    A planning problem in the kernel frame of a space; kernels take it as it is.
+
+    Attributes
+    ----------
+    space : NamedTuple
+        The compiled space.
+    lower, upper : (dim,)
+        A box around it.
+    start, goal : (dim,)
+        Start and centre of the goal region.
+    goal_radius : float
+        Radius of the goal region; 0 when the path has to end exactly at the goal.
+    margin : float
+        Distance from a chord's end at which one stops.
+    clearance : float
+        What a free point is away from the boundary, roughly and on average.
+    scale : float
+        Caller's units [m] in one unit of the kernel frame.
+
+    """
+
+    space: Any
+    lower: Floats
+    upper: Floats
+    start: Floats
+    goal: Floats
+    goal_radius: float
+    margin: float
+    clearance: float
+    scale: float
+
+
+def make_problem(space: Space, start: Floats, goal: Floats, goal_radius: float) -> Problem:
+    """Return the problem of going from start to goal (dim,) in a space, caller's frame."""
+    lower, upper = space.kernel_bounds
+    return Problem(
+        space=space.data,
+        lower=lower,
+        upper=upper,
+        start=space.to_kernel(start),
+        goal=space.to_kernel(goal),
+        goal_radius=goal_radius / space.scale,
+        margin=space.margin,
+        clearance=space.typical_clearance,
+        scale=space.scale,
+    )
+
+
+@kernel
+def reaches_goal(problem, x):
+    """Say whether a sample ends the search: it lies in the region, or it sees an exact goal."""
+    if problem.goal_radius == 0.0:
+        return segment_is_free(problem.space, x, problem.goal)
+    squared = 0.0
+    for i in range(len(x)):
+        squared += (x[i] - problem.goal[i]) ** 2
+    return squared <= problem.goal_radius**2
+
+
+class Search(Protocol):
+    """A search under way."""
+
+    @property
+    def iterations(self) -> int:
+        """Transitions handled: proposals drawn from the space, whatever became of them."""
+
+    @property
+    def solved(self) -> bool:
+        """Whether what it searches for is known."""
+
+    @property
+    def samples(self) -> Floats:
+        """Start and accepted vertices (k, dim), oldest first."""
+
+    @property
+    def parents(self) -> NDArray[np.int64]:
+        """Index (k,) of the sample that each was reached from; -1 for the roots."""
+
+    @property
+    def counts(self) -> dict[str, int]:
+        """What else was counted, by name."""
+
+    def advance(self, n_iterations: int) -> None:
+        """Handle at most ``n_iterations`` further transitions, fewer once solved."""
+
+
+class PathSearch(Search, Protocol):
+    """A search for a path."""
+
+    @property
+    def path(self) -> Floats:
+        """Path (m, dim) of a solved search: from the start into the region, or to the goal."""
+
+    @property
+    def taut(self) -> bool:
+        """Whether the path of a solved search is as short as pulling could make it."""
+
+
+class Planner(Protocol):
+    """A planner: a name, and how to start a search."""
+
+    @property
+    def name(self) -> str:
+        """Name in ``plan``'s table of algorithms."""
+
+    def start(self, problem: Problem, rng: Stream) -> PathSearch:
+        """Start a search."""
+
+
+def compile_search(planner: Planner, problem: Problem) -> None:
+    """
+    Compile what searches of a planner run, both the first steps and later ones.
+
+    Nobody has looked at start and goal yet, which may lie anywhere: the bounds stand for them.
+    """
+    bounded = problem._replace(start=problem.lower, goal=problem.upper)
+    search = planner.start(bounded, stream(0))
+    for _ in range(2):
+        search.advance(0)
+
+
+def to_goal(problem: Problem, points: Floats) -> Floats:
+    """Return ``points`` (m, dim), whose last one reaches the goal, with an exact goal added."""
+    return points if problem.goal_radius > 0.0 else np.vstack([points, problem.goal])
+
+
+def with_room(array: NDArray[Any], rows: int) -> NDArray[Any]:
+    """
+    Return ``array``, or a copy several times as long when it has fewer than ``rows``.
+
+    Copies are what a clock would have to wait for, so they are rare; room that is not used yet
+    takes no memory.
+    """
+    if len(array) >= rows:
+        return array
+    larger = np.empty((max(rows, GROWTH * len(array)), *array.shape[1:]), dtype=array.dtype)
+    larger[: len(array)] = array
+    return larger

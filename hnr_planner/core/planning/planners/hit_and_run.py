@@ -1,0 +1,93 @@
+"""
+Hit-and-Run as a planner (paper, Section 1).
+
+From the start, one Hit-and-Run step after another, until a sample reaches the goal. Each step lies
+on a chord, so the chain itself is the path: it needs neither a sampler of the space nor a tree.
+"""
+
+from dataclasses import dataclass, field
+from typing import ClassVar
+
+from hnr_planner.core.checks import Floats
+from hnr_planner.core.kernels.borrowed import borrowed
+from hnr_planner.core.kernels.kernel import kernel
+from hnr_planner.core.kernels.streams import Stream
+from hnr_planner.core.planning.planner import Problem, reaches_goal, to_goal, with_room
+from hnr_planner.core.sampling.draws import hit_and_run_step
+import numpy as np
+from numpy.typing import NDArray
+
+
+@dataclass(frozen=True)
+class HitAndRun:
+    """The paper's Hit-and-Run planner. It has no settings."""
+
+    name: ClassVar[str] = 'hit_and_run'
+
+    def start(self, problem: Problem, rng: Stream) -> 'HitAndRunSearch':
+        """Start a chain at the problem's start."""
+        return HitAndRunSearch(problem, rng)
+
+
+@dataclass
+class HitAndRunSearch:
+    """A chain under way; a transition is one step."""
+
+    problem: Problem
+    rng: Stream
+    solved: bool = field(init=False, default=False)
+    taut: ClassVar[bool] = False
+    redraws: int = field(init=False, default=0)
+    _chain: Floats = field(init=False)
+    _length: int = field(init=False, default=1)
+
+    def __post_init__(self) -> None:
+        self._chain = self.problem.start[np.newaxis].copy()
+
+    @property
+    def iterations(self) -> int:
+        """Steps taken."""
+        return self._length - 1
+
+    @property
+    def samples(self) -> Floats:
+        """The chain (k, dim)."""
+        return self._chain[: self._length]
+
+    @property
+    def parents(self) -> NDArray[np.int64]:
+        """Each sample was reached from the one before."""
+        return np.arange(-1, self._length - 1)
+
+    @property
+    def path(self) -> Floats:
+        """The whole chain, and the goal."""
+        return to_goal(self.problem, self.samples)
+
+    @property
+    def counts(self) -> dict[str, int]:
+        """Draws that rounded onto the boundary and were drawn again."""
+        return {'redraws': self.redraws}
+
+    def advance(self, n_iterations: int) -> None:
+        """Take at most ``n_iterations`` further steps."""
+        if self.solved:
+            return
+        end = self._length + n_iterations
+        self._chain = with_room(self._chain, end)
+        self._length, self.solved, redraws = _walk(
+            self.problem, self.rng, self._chain, self._length, end
+        )
+        self.redraws += redraws
+
+
+@kernel
+def _walk(problem, rng, chain, length, end):
+    """Walk on from the last of ``length`` samples until the goal or ``end`` samples."""
+    problem, rng, chain = borrowed(problem), borrowed(rng), borrowed(chain)
+    redraws = 0
+    for k in range(length, end):
+        redraws += hit_and_run_step(problem.space, chain[k - 1], rng, chain[k])
+        if reaches_goal(problem, chain[k]):
+            return k + 1, True, redraws
+    return end, False, redraws

@@ -1,0 +1,158 @@
+"""
+Exact nearest neighbours of growing sets of points.
+
+A tree of boxes: each node halves its box in the middle, along one axis after the other, and each
+leaf holds a short list of points. Boxes halve whatever the order in which points come, so that a
+corridor explored from one end to the other gives no deeper a tree than points at random; insertion
+and query cost like the logarithm of the number of points. Several sets may share the memory of one
+tree, each with a root of its own: compiled code pays for every array that it hands on.
+"""
+
+from typing import NamedTuple
+
+from hnr_planner.core.checks import Floats
+from hnr_planner.core.kernels.kernel import kernel
+from hnr_planner.core.trees import NONE
+import numpy as np
+from numpy.typing import NDArray
+
+LEAF_SIZE = 8
+#: Points nearer to each other than a box of this depth stay in one leaf.
+DEPTH_MAX = 100
+
+
+class BoxTree(NamedTuple):
+    """
+    Points in leaves of trees of boxes, one tree for each root.
+
+    Attributes
+    ----------
+    lower, upper : (dim,)
+        The box of the roots, the first nodes.
+    child : (nodes, 2) int32
+        Lower and upper half; NONE in a leaf.
+    split : (nodes,)
+        Where the node is halved.
+    first : (nodes,) int32
+        First point of a leaf's list; NONE when it is empty.
+    following : (points,) int32
+        Next point of the list.
+    size : (nodes,) int32
+        Points in a leaf.
+    n_nodes : (1,) int64
+        Nodes in use.
+    waiting : (DEPTH_MAX + 2, 3)
+        Room for a query's list of halves still to visit, so that it need not ask for memory: node,
+        depth, and squared distance to the plane before it. A tree answers one query at a time.
+
+    """
+
+    lower: Floats
+    upper: Floats
+    child: NDArray[np.int32]
+    split: Floats
+    first: NDArray[np.int32]
+    following: NDArray[np.int32]
+    size: NDArray[np.int32]
+    n_nodes: NDArray[np.int64]
+    waiting: Floats
+
+
+def empty_box_tree(lower: Floats, upper: Floats, capacity: int, n_roots: int = 1) -> BoxTree:
+    """Return ``n_roots`` trees without points that have room for ``capacity`` of them in all."""
+    nodes = 2 * capacity + n_roots
+    return BoxTree(
+        lower=lower,
+        upper=upper,
+        child=np.full((nodes, 2), NONE, dtype=np.int32),
+        split=np.zeros(nodes),
+        first=np.full(nodes, NONE, dtype=np.int32),
+        following=np.full(capacity, NONE, dtype=np.int32),
+        size=np.zeros(nodes, dtype=np.int32),
+        n_nodes=np.full(1, n_roots, dtype=np.int64),
+        waiting=np.zeros((DEPTH_MAX + 2, 3)),
+    )
+
+
+def grown(tree: BoxTree, capacity: int) -> BoxTree:
+    """Return the same trees with room for ``capacity`` points."""
+    n_roots = len(tree.child) - 2 * len(tree.following)
+    larger = empty_box_tree(tree.lower, tree.upper, capacity, n_roots)
+    for name in ('child', 'split', 'first', 'following', 'size', 'n_nodes'):
+        old = getattr(tree, name)
+        getattr(larger, name)[: len(old)] = old
+    return larger
+
+
+@kernel
+def insert(tree, points, k, root=0):
+    """Add point ``k`` of ``points`` (n, dim) to the tree of a root; each row to one tree."""
+    dim = points.shape[1]
+    lower, upper = tree.lower.copy(), tree.upper.copy()
+    node, depth = root, 0
+    while tree.child[node, 0] != NONE:
+        axis = depth % dim
+        if points[k, axis] < tree.split[node]:
+            upper[axis] = tree.split[node]
+            node = tree.child[node, 0]
+        else:
+            lower[axis] = tree.split[node]
+            node = tree.child[node, 1]
+        depth += 1
+    _push(tree, node, k)
+    if tree.size[node] > LEAF_SIZE and depth < DEPTH_MAX:
+        axis = depth % dim
+        _halve(tree, points, node, axis, (lower[axis] + upper[axis]) / 2.0)
+
+
+@kernel
+def _push(tree, leaf, k):
+    tree.following[k] = tree.first[leaf]
+    tree.first[leaf] = k
+    tree.size[leaf] += 1
+
+
+@kernel
+def _halve(tree, points, leaf, axis, middle):
+    """Make ``leaf`` an inner node and hand its points to its two halves."""
+    new = tree.n_nodes[0]
+    tree.n_nodes[0] += 2
+    k = tree.first[leaf]
+    tree.child[leaf, 0], tree.child[leaf, 1] = new, new + 1
+    tree.split[leaf] = middle
+    while k != NONE:
+        following = tree.following[k]
+        _push(tree, new if points[k, axis] < middle else new + 1, k)
+        k = following
+
+
+@kernel
+def nearest(tree, points, x, root=0):
+    """Index of a root's point nearest to ``x``; the first one where several are as near."""
+    dim = points.shape[1]
+    waiting = tree.waiting
+    waiting[0, 0], waiting[0, 1], waiting[0, 2] = root, 0.0, 0.0
+    n_waiting = 1
+    best, best_squared = NONE, np.inf
+    while n_waiting > 0:
+        n_waiting -= 1
+        if waiting[n_waiting, 2] > best_squared:
+            continue
+        node, depth = int(waiting[n_waiting, 0]), int(waiting[n_waiting, 1])
+        while tree.child[node, 0] != NONE:
+            offset = x[depth % dim] - tree.split[node]
+            near = 0 if offset < 0.0 else 1
+            depth += 1
+            waiting[n_waiting, 0], waiting[n_waiting, 1] = tree.child[node, 1 - near], depth
+            waiting[n_waiting, 2] = offset * offset
+            n_waiting += 1
+            node = tree.child[node, near]
+        k = tree.first[node]
+        while k != NONE:
+            squared = 0.0
+            for i in range(dim):
+                squared += (points[k, i] - x[i]) ** 2
+            if squared < best_squared or (squared == best_squared and k < best):
+                best, best_squared = k, squared
+            k = tree.following[k]
+    return best

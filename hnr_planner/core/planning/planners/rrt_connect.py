@@ -1,0 +1,227 @@
+"""
+RRT-Connect (Kuffner and LaValle 2000): RRTs from both ends, each drawn to the other's new vertex.
+
+In turn a tree is extended towards a uniform point of the box around the space, by one step from
+the vertex nearest to it; when that step is free, the other tree takes step after step towards its
+end. They meet when such a step arrives. A step that is not free adds nothing. As in OMPL, a step
+is a fifth of the box's diagonal at most.
+"""
+
+from dataclasses import dataclass, field
+import math
+from typing import ClassVar, NamedTuple
+
+from hnr_planner.core.checks import check_positive, Floats
+from hnr_planner.core.kernels.borrowed import borrowed
+from hnr_planner.core.kernels.kernel import kernel
+from hnr_planner.core.kernels.streams import Stream
+from hnr_planner.core.lengths import norm
+from hnr_planner.core.planning.planner import Problem, reaches_goal, with_room
+from hnr_planner.core.planning.planners.nearest import (
+    BoxTree,
+    empty_box_tree,
+    grown,
+    insert,
+    nearest,
+)
+from hnr_planner.core.planning.planners.rrt import draw_in_box
+from hnr_planner.core.planning.planners.two_trees import TwoTreeSearch
+from hnr_planner.core.spaces.primitives import component, segment_is_free
+from hnr_planner.core.trees import NONE
+import numpy as np
+from numpy.typing import NDArray
+
+#: Longest step when none is given, as a part of the box's diagonal.
+STEP = 0.2
+#: Vertices that there is room for at first.
+ROOM = 64
+#: What becomes of a step: it is not free, it is free, or it is free and arrives.
+TRAPPED, ADVANCED, REACHED = 0, 1, 2
+
+
+class Trees(NamedTuple):
+    """
+    Two trees in one table: tree 0 grows from the start, tree 1 from the goal.
+
+    Attributes
+    ----------
+    vertices : (rows, dim)
+        Vertices of both trees, oldest first.
+    parents : (rows,) int64
+        Row of each vertex's parent, NONE for the roots.
+    size : (1,) int64
+        Rows in use.
+    boxes : BoxTree
+        The vertices, to find a tree's nearest; the trees are its roots.
+    turn : (1,) int64
+        The tree that is extended next.
+    drawn : (2,) int64
+        Row of the vertex of that tree from which it is drawn to the other's new vertex, and that
+        one's row; NONE where it is extended towards a uniform point.
+
+    """
+
+    vertices: Floats
+    parents: NDArray[np.int64]
+    size: NDArray[np.int64]
+    boxes: BoxTree
+    turn: NDArray[np.int64]
+    drawn: NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class RRTConnect:
+    """
+    RRT-Connect.
+
+    Attributes
+    ----------
+    max_step : float, optional
+        Longest step [m], above 0; a fifth of the diagonal of the box around the space when left
+        out, inf for no limit.
+
+    """
+
+    max_step: float | None = None
+    name: ClassVar[str] = 'rrt_connect'
+
+    def __post_init__(self) -> None:
+        if self.max_step is not None:
+            object.__setattr__(self, 'max_step', check_positive('max_step', self.max_step))
+
+    def start(self, problem: Problem, rng: Stream) -> 'RRTConnectSearch':
+        """Start a tree at each end."""
+        if self.max_step is None:
+            max_step = STEP * norm(problem.upper - problem.lower)
+        else:
+            max_step = self.max_step / problem.scale
+        return RRTConnectSearch(problem, rng, max_step)
+
+
+@dataclass
+class RRTConnectSearch(TwoTreeSearch):
+    """Two trees under way; a transition is one step of one of them, free or not."""
+
+    max_step: float
+    _trees: Trees = field(init=False)
+    _n_trees: int = field(init=False)
+
+    def __post_init__(self) -> None:
+        problem = self.problem
+        self._trees = Trees(
+            vertices=np.empty((ROOM, len(problem.start))),
+            parents=np.empty(ROOM, dtype=np.int64),
+            size=np.zeros(1, dtype=np.int64),
+            boxes=empty_box_tree(problem.lower, problem.upper, ROOM, n_roots=2),
+            turn=np.zeros(1, dtype=np.int64),
+            drawn=np.full(2, NONE),
+        )
+        self._n_trees = _plant(problem, self._trees)
+
+    @property
+    def _table(self) -> tuple[Floats, NDArray[np.int64]]:
+        rows = int(self._trees.size[0])
+        return self._trees.vertices[:rows], self._trees.parents[:rows]
+
+    @property
+    def counts(self) -> dict[str, int]:
+        """Nothing else is counted."""
+        return {}
+
+    def advance(self, n_iterations: int) -> None:
+        """Take at most ``n_iterations`` further steps."""
+        goal = self.iterations + n_iterations
+        while not self.solved:
+            # Most steps are blocked: there is room for some vertices, not for one from each step.
+            self._ends, taken = _grow(
+                self.problem,
+                self.max_step,
+                self._trees,
+                self._n_trees,
+                self.rng,
+                goal - self.iterations,
+            )
+            self.iterations += taken
+            if self.iterations == goal:
+                break
+            self._make_room()
+
+    def _make_room(self) -> None:
+        trees = self._trees
+        vertices = with_room(trees.vertices, len(trees.vertices) + 1)
+        self._trees = trees._replace(
+            vertices=vertices,
+            parents=with_room(trees.parents, len(vertices)),
+            boxes=grown(trees.boxes, len(vertices)),
+        )
+
+
+@kernel
+def _plant(problem, trees):
+    """Plant a root at the start, and one at a goal that it can reach; return how many."""
+    trees.vertices[0] = problem.start
+    _add(trees, 0, NONE)
+    if component(problem.space, problem.goal) != component(problem.space, problem.start):
+        return 1
+    trees.vertices[1] = problem.goal
+    _add(trees, 1, NONE)
+    return 2
+
+
+@kernel
+def _grow(problem, max_step, trees, n_trees, rng, n_iterations):
+    """Take steps until the trees meet or have no room: (the ends that met, steps taken)."""
+    problem, trees, rng = borrowed(problem), borrowed(trees), borrowed(rng)
+    towards, vertices, drawn = np.empty(len(problem.start)), trees.vertices, trees.drawn
+    for i in range(n_iterations):
+        if trees.size[0] == len(vertices):
+            return (NONE, NONE), i
+        tree, near, target = trees.turn[0], drawn[0], drawn[1]
+        if target == NONE:
+            draw_in_box(problem.lower, problem.upper, rng, towards)
+            near = nearest(trees.boxes, vertices, towards, tree)
+            trees.turn[0] = (tree + 1) % n_trees
+        else:
+            towards[:] = vertices[target]
+        outcome = _step(problem, max_step, vertices[near], towards, vertices[trees.size[0]])
+        if outcome == REACHED and target != NONE:
+            return ((near, target) if tree == 0 else (target, near)), i + 1
+        if outcome == TRAPPED:
+            drawn[:] = NONE
+            continue
+        row = _add(trees, tree, near)
+        if tree == 0 and problem.goal_radius > 0.0 and reaches_goal(problem, vertices[row]):
+            return (row, NONE), i + 1
+        if target != NONE:
+            # Nearer to the target than all of its tree: drawn on from there.
+            drawn[0] = row
+        elif n_trees == 2:
+            drawn[0], drawn[1] = nearest(trees.boxes, vertices, vertices[row], 1 - tree), row
+    return (NONE, NONE), n_iterations
+
+
+@kernel
+def _step(problem, max_step, vertex, target, end):
+    """Write the end of a step from a vertex towards a point: REACHED, ADVANCED or TRAPPED."""
+    squared = 0.0
+    for i in range(len(end)):
+        squared += (target[i] - vertex[i]) ** 2
+    length = math.sqrt(squared)
+    if length <= problem.margin:
+        return TRAPPED
+    reached = length <= max_step
+    for i in range(len(end)):
+        end[i] = target[i] if reached else vertex[i] + max_step / length * (target[i] - vertex[i])
+    if not segment_is_free(problem.space, vertex, end):
+        return TRAPPED
+    return REACHED if reached else ADVANCED
+
+
+@kernel
+def _add(trees, tree, parent):
+    """Make the vertex written in the first free row one of a tree; return that row."""
+    row = trees.size[0]
+    trees.parents[row] = parent
+    insert(trees.boxes, trees.vertices, row, tree)
+    trees.size[0] += 1
+    return row

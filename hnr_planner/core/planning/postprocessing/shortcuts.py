@@ -1,0 +1,194 @@
+"""
+Ways to shorten a path by visibility, as kernels: each only ever shortens, and counts its tests.
+
+``skip``: a vertex is followed by the last one that it sees. ``join``: random points of the path
+are joined. ``pull``: each vertex slides along its two segments until an obstacle is in the way,
+and what corner is left there is cut off, so that the path comes to lie taut around obstacles.
+
+With ``islands`` the path stays in its homology class: nothing is replaced by what passes one of
+them on the other side.
+"""
+
+from hnr_planner.core.kernels.borrowed import borrowed
+from hnr_planner.core.kernels.kernel import kernel
+from hnr_planner.core.kernels.streams import uniform
+from hnr_planner.core.lengths import norm
+from hnr_planner.core.planning.homology import crossings, loop_signature, signature
+from hnr_planner.core.spaces.primitives import segment_is_free
+import numpy as np
+
+#: Looks from one vertex, each halfway to the one before, at most.
+LOOKS_MAX = 64
+#: Halvings of the way on which a vertex slides or its corner is cut.
+HALVINGS = 12
+#: A corner is cut for a gain of more than this part of its two segments.
+LEAST_CUT = 1e-3
+
+
+@kernel
+def skip(space, islands, points, kept, n_kept, every, tests_max):
+    """
+    Go on from the last vertex kept to the last one that it sees, and so on.
+
+    A vertex looks at ``every`` one after it, the last one first, or only at the last one, the one
+    halfway there, halfway to that, ...; with too few tests left for all of them it does not begin.
+    Returns (vertices kept, tests).
+    """
+    space, points = borrowed(space), borrowed(points)
+    last, tests = len(points) - 1, 0
+    while kept[n_kept - 1] < last:
+        at = kept[n_kept - 1]
+        ahead = last - at
+        if tests + (ahead if every else LOOKS_MAX) > tests_max:
+            break
+        while ahead > 1:
+            tests += 1
+            if _may_join(space, islands, points, at, at + ahead):
+                break
+            ahead = ahead - 1 if every else ahead // 2
+        kept[n_kept] = at + ahead
+        n_kept += 1
+    return n_kept, tests
+
+
+@kernel
+def _may_join(space, islands, points, i, j):
+    """Say whether vertices ``i`` and ``j`` of a path see each other, on its side of islands."""
+    if not segment_is_free(space, points[i], points[j]):
+        return False
+    after = j + 1
+    return signature(islands, points[i:after]) == crossings(islands, points[i], points[j])
+
+
+@kernel
+def join(space, islands, points, rng, n_pairs):
+    """Try to join random pairs of points of the path directly, by three tests each: the path."""
+    space, islands, rng = borrowed(space), borrowed(islands), borrowed(rng)
+    for _ in range(n_pairs):
+        points = _join_two(space, islands, points, rng)
+    return points
+
+
+@kernel
+def pull(space, islands, points, k, margin, tests_max):
+    """Slide and cut the vertices from ``k`` on: (path, vertex to go on from, tests)."""
+    space, islands = borrowed(space), borrowed(islands)
+    tests = 0
+    while k < len(points) - 1 and tests + 1 + 3 * HALVINGS <= tests_max:
+        if _may_join(space, islands, points, k - 1, k + 1):
+            points = _replaced(points, k, points[:0])
+            tests += 1
+            continue
+        _slide(space, islands, points[k - 1], points[k], points[k + 1], margin)
+        _slide(space, islands, points[k + 1], points[k], points[k - 1], margin)
+        corner = _cut(space, islands, points[k - 1], points[k], points[k + 1], margin)
+        tests += 1 + 3 * HALVINGS
+        points = _replaced(points, k, corner)
+        k += len(corner)
+    return points, k, tests
+
+
+@kernel
+def _slide(space, islands, a, x, b, margin):
+    """Slide ``x`` towards ``a`` to ``margin`` before it would lose sight of ``b``."""
+    free, blocked = 0.0, 1.0
+    for _ in range(HALVINGS):
+        middle = (free + blocked) / 2.0
+        y = x + middle * (a - x)
+        if segment_is_free(space, y, b) and loop_signature(islands, y, x, b) == 0:
+            free = middle
+        else:
+            blocked = middle
+    length = norm(a - x)
+    if free * length > margin:
+        x += (free - margin / length) * (a - x)
+
+
+@kernel
+def _cut(space, islands, a, x, b, margin):
+    """Cut off the corner a-x-b as far as the cut is free: its two ends, ``x`` for little gain."""
+    free, blocked = 0.0, 1.0
+    for _ in range(HALVINGS):
+        middle = (free + blocked) / 2.0
+        first, second = x + middle * (a - x), x + middle * (b - x)
+        if (
+            segment_is_free(space, first, second)
+            and loop_signature(islands, first, x, second) == 0
+        ):
+            free = middle
+        else:
+            blocked = middle
+    corner = np.empty((2, len(x)))
+    around = norm(x - a) + norm(b - x)
+    free = max(free - margin / around, 0.0)
+    corner[0], corner[1] = x + free * (a - x), x + free * (b - x)
+    gain = free * around - norm(corner[1] - corner[0])
+    if gain > LEAST_CUT * around:
+        return corner
+    corner[0] = x
+    return corner[:1]
+
+
+@kernel
+def _replaced(points, k, others):
+    """Path with vertex ``k`` replaced by ``others`` (n, dim)."""
+    after = k + 1
+    return np.concatenate((points[:k], others, points[after:]))
+
+
+@kernel
+def _join_two(space, islands, points, rng):
+    """Try to join two random points of the path, uniform along its length, directly."""
+    along = _lengths_along(points)
+    s, t = along[-1] * uniform(rng), along[-1] * uniform(rng)
+    i, j = _segment_at(along, min(s, t)), _segment_at(along, max(s, t))
+    if i == j:
+        return points
+    a, b = _point_on(points, along, i, min(s, t)), _point_on(points, along, j, max(s, t))
+    if (
+        segment_is_free(space, points[i], a)
+        and segment_is_free(space, a, b)
+        and segment_is_free(space, b, points[j + 1])
+    ):
+        joined = _joined(points, i, a, b, j + 1)
+        if signature(islands, joined) == signature(islands, points):
+            return joined
+    return points
+
+
+@kernel
+def _lengths_along(points):
+    """Length of the path up to each of its vertices (m,)."""
+    along = np.zeros(len(points))
+    for k in range(1, len(points)):
+        along[k] = along[k - 1] + norm(points[k] - points[k - 1])
+    return along
+
+
+@kernel
+def _segment_at(along, s):
+    """Index of the segment that holds the point at length ``s``."""
+    k = 0
+    while k < len(along) - 2 and along[k + 1] <= s:
+        k += 1
+    return k
+
+
+@kernel
+def _point_on(points, along, k, s):
+    """Point at length ``s`` on segment ``k``."""
+    length = along[k + 1] - along[k]
+    fraction = (s - along[k]) / length if length > 0.0 else 0.0
+    return points[k] + fraction * (points[k + 1] - points[k])
+
+
+@kernel
+def _joined(points, i, a, b, j):
+    """Path with everything between vertices ``i`` and ``j`` replaced by the segment a-b."""
+    kept = i + 1
+    shorter = np.empty((kept + 2 + len(points) - j, points.shape[1]))
+    shorter[:kept] = points[:kept]
+    shorter[kept], shorter[kept + 1] = a, b
+    tail = kept + 2
+    shorter[tail:] = points[j:]
+    return shorter

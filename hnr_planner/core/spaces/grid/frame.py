@@ -1,0 +1,134 @@
+"""Where a grid lies in the map: between metres of the map frame and cells of the kernel frame."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from functools import cached_property
+import math
+from typing import ClassVar
+
+from hnr_planner.core.checks import check_real, Floats
+from hnr_planner.core.errors import SpaceError
+from hnr_planner.core.kernels.kernel import kernel
+import numpy as np
+
+#: Coordinates must resolve this part of a cell, or free and blocked cannot be told apart.
+FINEST = 1e-6
+
+
+@dataclass(frozen=True)
+class GridFrame:
+    """
+    Frame of a grid: origin and yaw are applied here and nowhere else.
+
+    The kernel frame has one unit for one cell. It starts one cell before the grid, at the corner
+    of a rim of blocked cells, so that every ray ends inside the arrays.
+
+    Attributes
+    ----------
+    resolution : float
+        Side of a cell [m].
+    origin : (x, y, yaw)
+        Pose of the outer corner of cell [0, 0] in the map frame [m, m, rad].
+    shape : (rows, columns)
+        Cells of the grid, without the rim.
+
+    """
+
+    resolution: float
+    origin: tuple[float, float, float]
+    shape: tuple[int, int]
+
+    RIM: ClassVar[int] = 1
+
+    @classmethod
+    def checked(
+        cls, resolution: float, origin: Iterable[float], shape: tuple[int, ...]
+    ) -> 'GridFrame':
+        """Build a frame from a caller's numbers, or raise SpaceError naming the wrong one."""
+        resolution = check_real('resolution', resolution, SpaceError)
+        if not 0.0 < resolution < math.inf:
+            raise SpaceError(f'resolution must be above 0 and finite, got {resolution!r}')
+        try:
+            x, y, yaw = np.asarray(origin, dtype=np.float64).tolist()
+        except (TypeError, ValueError, OverflowError):
+            x = y = yaw = math.nan
+        if not all(map(math.isfinite, (x, y, yaw))):
+            raise SpaceError(f'origin must be three finite numbers (x, y, yaw), got {origin!r}')
+        frame = cls(resolution, (x, y, yaw), (int(shape[0]), int(shape[1])))
+        if not frame.rounding <= FINEST:
+            raise SpaceError(
+                f'origin {frame.origin} is too far away: coordinates there are rounded to '
+                f'{frame.rounding:.2g} of a cell of {resolution:g} m, more than {FINEST:g}'
+            )
+        return frame
+
+    @cached_property
+    def rounding(self) -> float:
+        """Spacing of the floating-point numbers at the far end of the map, in cells."""
+        extent = math.hypot(*self.shape) * self.resolution
+        farthest = max(abs(self.origin[0]), abs(self.origin[1])) + extent
+        return float(np.spacing(farthest)) / self.resolution
+
+    @cached_property
+    def corners(self) -> Floats:
+        """Corners (4, 2) of the grid in the kernel frame, counter-clockwise from the origin."""
+        rows, columns = self.shape
+        unit = np.array([(0, 0), (1, 0), (1, 1), (0, 1)])
+        return unit * np.array([columns, rows], dtype=np.float64) + self.RIM
+
+    @cached_property
+    def _turn(self) -> tuple[float, float]:
+        """Cosine and sine of the yaw, exact for none."""
+        return math.cos(self.origin[2]), math.sin(self.origin[2])
+
+    @cached_property
+    def to_cells(self) -> tuple[Floats, Floats]:
+        """Matrix (2, 2) and offset (2,) that bring a point of the map frame into this one."""
+        cos, sin = self._turn
+        matrix = np.array([[cos, sin], [-sin, cos]]) / self.resolution
+        return matrix, self.RIM - matrix @ np.array(self.origin[:2])
+
+    def to_kernel(self, points: Floats) -> Floats:
+        """Bring points (..., 2) [m] of the map frame into the kernel frame."""
+        x, y, _ = self.origin
+        cells = _to_cells(_in_rows(points), x, y, *self._turn, self.resolution, self.RIM)
+        return cells.reshape(points.shape)
+
+    def from_kernel(self, cells: Floats) -> Floats:
+        """Bring points (..., 2) of the kernel frame into the map frame [m]."""
+        x, y, _ = self.origin
+        points = _from_cells(_in_rows(cells), x, y, *self._turn, self.resolution, self.RIM)
+        return points.reshape(cells.shape)
+
+    def turn_to_kernel(self, directions: Floats) -> Floats:
+        """Turn directions (..., 2) of the map frame into the grid's frame."""
+        return _to_cells(_in_rows(directions), 0.0, 0.0, *self._turn, 1.0, 0).reshape(
+            directions.shape
+        )
+
+
+def _in_rows(points: Floats) -> Floats:
+    """Points (..., 2) as (k, 2), in the order of memory that the kernels are compiled for."""
+    return np.ascontiguousarray(points).reshape(-1, 2)
+
+
+@kernel
+def _to_cells(points, x, y, cos, sin, resolution, rim):
+    """Points (k, 2) in the frame at (x, y), turned back by its yaw, in cells beyond the rim."""
+    cells = np.empty_like(points)
+    for k in range(len(points)):
+        dx, dy = points[k, 0] - x, points[k, 1] - y
+        cells[k, 0] = (dx * cos + dy * sin) / resolution + rim
+        cells[k, 1] = (dy * cos - dx * sin) / resolution + rim
+    return cells
+
+
+@kernel
+def _from_cells(cells, x, y, cos, sin, resolution, rim):
+    """Undo ``_to_cells``: points (k, 2) of cells (k, 2)."""
+    points = np.empty_like(cells)
+    for k in range(len(cells)):
+        dx, dy = (cells[k, 0] - rim) * resolution, (cells[k, 1] - rim) * resolution
+        points[k, 0] = dx * cos - dy * sin + x
+        points[k, 1] = dx * sin + dy * cos + y
+    return points

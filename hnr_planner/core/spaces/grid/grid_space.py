@@ -1,0 +1,314 @@
+"""An occupancy grid as a space: what is free, what is connected, how far the walls are."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Literal
+
+from hnr_planner.core.checks import check_point, check_points, check_real, Floats
+from hnr_planner.core.errors import RequestError, SpaceError
+from hnr_planner.core.spaces.clearance import path_clearance, point_clearance
+from hnr_planner.core.spaces.grid.cells import Bools, read_blocked, read_occupancy
+from hnr_planner.core.spaces.grid.components import island_points, nearest_in_part
+from hnr_planner.core.spaces.grid.fields import components, free_distance, inflate
+from hnr_planner.core.spaces.grid.frame import GridFrame
+from hnr_planner.core.spaces.grid.lattice import build_lattice, Lattice, rough_path
+from hnr_planner.core.spaces.grid.traversal import GridData
+from hnr_planner.core.spaces.primitives import part_of
+from hnr_planner.core.spaces.space import Space
+from hnr_planner.core.spaces.transformed import PlacedData
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+#: Cells looked at, about, for a mean over all of a map.
+TYPICAL_CELLS = 10_000
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class GridSpace(Space):
+    """
+    The free points of an occupancy grid: ``GridSpace.from_occupancy`` or ``.from_blocked``.
+
+    Row 0 of every array is the row nearest the origin, points are (x, y) in metres in the map
+    frame, and the grid's frame lies in it at ``origin`` (x, y, yaw). Blocked cells are closed and
+    everything outside the grid is blocked.
+
+    Attributes
+    ----------
+    frame : GridFrame
+        Where the grid lies: resolution and origin.
+    robot_radius : float
+        Radius [m] by which the occupied cells were inflated.
+    data : GridData
+        The compiled grid.
+
+    """
+
+    frame: GridFrame
+    robot_radius: float
+    data: GridData
+    _wall_distance: NDArray[np.uint8]
+
+    dim = 2
+
+    @classmethod
+    def from_occupancy(
+        cls,
+        data: ArrayLike,
+        resolution: float,
+        origin: tuple[float, float, float] = (0.0, 0.0, 0.0),
+        *,
+        robot_radius: float = 0.0,
+        occupied_threshold: int = 65,
+        unknown: Literal['blocked', 'free'] = 'blocked',
+    ) -> 'GridSpace':
+        """
+        Build the space of a ``nav_msgs/OccupancyGrid``.
+
+        Parameters
+        ----------
+        data : (rows, cols) integers
+            Occupancy: 0..100, -1 for unknown; values outside -1..100 count as unknown.
+        resolution : float
+            Side of a cell [m].
+        origin : (x, y, yaw)
+            Pose of the outer corner of cell [0, 0] in the map frame [m, m, rad].
+        robot_radius : float
+            A cell is blocked when its centre is within this distance [m] of the centre of an
+            occupied cell. Unknown cells and the map's edge block, but are not inflated.
+        occupied_threshold : int
+            Cells of at least this value, 1..100, are occupied.
+        unknown : 'blocked' or 'free'
+            What unknown cells are.
+
+        Raises
+        ------
+        SpaceError
+            When one of the arguments describes no grid; the message names it.
+
+        """
+        occupied, closed = read_occupancy(data, occupied_threshold, unknown)
+        return cls._build(occupied, closed, resolution, origin, robot_radius)
+
+    @classmethod
+    def from_blocked(
+        cls,
+        blocked: ArrayLike,
+        resolution: float = 1.0,
+        origin: tuple[float, float, float] = (0.0, 0.0, 0.0),
+        *,
+        robot_radius: float = 0.0,
+    ) -> 'GridSpace':
+        """Build the space whose occupied cells are ``blocked`` (rows, cols) bool; see above."""
+        occupied = read_blocked(blocked)
+        return cls._build(occupied, np.zeros_like(occupied), resolution, origin, robot_radius)
+
+    @classmethod
+    def _build(
+        cls,
+        occupied: Bools,
+        closed: Bools,
+        resolution: float,
+        origin: Iterable[float],
+        radius: float,
+    ) -> 'GridSpace':
+        frame = GridFrame.checked(resolution, origin, occupied.shape)
+        radius = check_real('robot_radius', radius, SpaceError)
+        if not 0.0 <= radius < np.inf:
+            raise SpaceError(f'robot_radius must be at least 0 and finite, got {radius!r}')
+        distance = free_distance(inflate(occupied, radius / frame.resolution) | closed)
+        return cls(
+            frame=frame,
+            robot_radius=radius,
+            data=GridData(distance, components(distance > 0)),
+            _wall_distance=free_distance(occupied, closed_rim=False),
+        )
+
+    # -- where it lies ---------------------------------------------------------------------------
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Rows and columns."""
+        return self.frame.shape
+
+    @property
+    def resolution(self) -> float:
+        """Side of a cell [m]."""
+        return self.frame.resolution
+
+    @property
+    def origin(self) -> tuple[float, float, float]:
+        """Pose (x, y, yaw) of the grid in the map frame [m, m, rad]."""
+        return self.frame.origin
+
+    @cached_property
+    def part(self) -> PlacedData:
+        """The compiled grid in the map frame."""
+        return PlacedData(self.data, *self.frame.to_cells)
+
+    @property
+    def scale(self) -> float:
+        """Metres in one unit of the kernel frame, which is one cell."""
+        return self.frame.resolution
+
+    @property
+    def bounds(self) -> tuple[Floats, Floats]:
+        """Lower and upper corner (2,) [m] of a box around the grid, in the map frame."""
+        corners = self.from_kernel(self.frame.corners)
+        return corners.min(axis=0), corners.max(axis=0)
+
+    @property
+    def kernel_bounds(self) -> tuple[Floats, Floats]:
+        """Lower and upper corner (2,) of the grid in the kernel frame."""
+        return self.frame.corners[0], self.frame.corners[2]
+
+    @cached_property
+    def margin(self) -> float:
+        """Distance from a chord's end at which one stops, never below what coordinates resolve."""
+        return max(super().margin, 8.0 * self.frame.rounding)
+
+    @cached_property
+    def typical_clearance(self) -> float:
+        """Mean distance in king's moves from a free cell to a blocked one, over a sample."""
+        stride = max(1, int(np.sqrt(self.data.labels.size / TYPICAL_CELLS)))
+        distance = self.data.free_distance[::stride, ::stride]
+        free = distance[distance > 0]
+        return float(free.mean()) if free.size else 1.0
+
+    def to_kernel(self, points: Floats) -> Floats:
+        """Bring points (..., 2) [m] of the map frame into cells of the kernel frame."""
+        return self.frame.to_kernel(points)
+
+    def from_kernel(self, points: Floats) -> Floats:
+        """Bring points (..., 2) in cells of the kernel frame into the map frame [m]."""
+        return self.frame.from_kernel(points)
+
+    def turn_to_kernel(self, directions: Floats) -> Floats:
+        """Turn directions (..., 2) of the map frame into the grid's."""
+        return self.frame.turn_to_kernel(directions)
+
+    def cell_centres(self, rows: ArrayLike, columns: ArrayLike) -> Floats:
+        """Centres (k, 2) [m] of the cells at ``rows`` and ``columns`` (k,), in the map frame."""
+        cells = np.stack([np.asarray(columns), np.asarray(rows)], axis=-1)
+        return self.frame.from_kernel(cells + (self.frame.RIM + 0.5))
+
+    # -- what is free ----------------------------------------------------------------------------
+
+    @property
+    def blocked(self) -> Bools:
+        """Cells (rows, cols) that no path may touch."""
+        return self.data.free_distance[1:-1, 1:-1] == 0
+
+    @property
+    def occupied(self) -> Bools:
+        """Cells (rows, cols) that the map says are occupied, before inflation."""
+        return self._wall_distance[1:-1, 1:-1] == 0
+
+    def reaches_to(self, point: ArrayLike) -> bool:
+        """Say whether ``point`` (2,) [m] lies on the map, its edge included."""
+        x, y = self.frame.to_kernel(check_point('point', point, 2)) - self.frame.RIM
+        rows, columns = self.shape
+        return bool(0.0 <= x <= columns and 0.0 <= y <= rows)
+
+    def why_not_free(self, point: ArrayLike) -> str:
+        """Say in words why ``point`` (2,) [m] is not free."""
+        x, y = self.frame.to_kernel(check_point('point', point, 2)) - self.frame.RIM
+        rows, columns = self.shape
+        if not (0 < x < columns and 0 < y < rows):
+            lower, upper = self.bounds
+            where = 'on the edge of' if self.reaches_to(point) else 'outside'
+            return (
+                f'{where} the map, which spans '
+                f'x {lower[0]:g}..{upper[0]:g}, y {lower[1]:g}..{upper[1]:g} m'
+            )
+        row, column = int(y), int(x)
+        cell = f'cell [{row}, {column}]'
+        if self.occupied[row, column]:
+            return f'inside an obstacle: {cell} is occupied'
+        if not self.blocked[row, column]:
+            return f'on the edge of a blocked cell beside {cell}'
+        if self._is_near_wall(row, column):
+            return f'within the robot radius of {self.robot_radius:g} m of an obstacle, in {cell}'
+        return f'in unknown space: {cell} is unknown'
+
+    def _is_near_wall(self, row: int, column: int) -> bool:
+        reach = int(min(self.robot_radius / self.resolution, max(self.shape))) + 1
+        top, left = max(row - reach, 0), max(column - reach, 0)
+        bottom, right = row + reach + 1, column + reach + 1
+        window = self.occupied[top:bottom, left:right]
+        return bool(inflate(window, self.robot_radius / self.resolution)[row - top, column - left])
+
+    # -- what is connected -----------------------------------------------------------------------
+
+    def connected(self, a: ArrayLike, b: ArrayLike) -> bool:
+        """
+        Say whether a path joins two free points, exactly.
+
+        Free cells that share an edge are connected; those that share only a corner are not, since
+        the corner touches the two obstacles beside it.
+        """
+        part = self._part(check_point('a', a, 2))
+        return part != 0 and part == self._part(check_point('b', b, 2))
+
+    def region_reachable(self, start: ArrayLike, goal: ArrayLike, radius: float) -> bool:
+        """Say whether a path leads from ``start`` to within ``radius`` [m] of ``goal``."""
+        return self.nearest_reachable(start, goal, radius) is not None
+
+    def largest_component(self) -> Bools:
+        """Return the cells (rows, cols) of the largest connected part of free space."""
+        labels = self.data.labels[1:-1, 1:-1]
+        sizes = np.bincount(labels.ravel())
+        sizes[0] = 0
+        return (labels == sizes.argmax()) & (labels > 0)
+
+    def nearest_reachable(self, start: ArrayLike, goal: ArrayLike, radius: float) -> Floats | None:
+        """
+        Return the point of the start's component nearest to ``goal``; None beyond ``radius`` [m].
+
+        Free space is open, so a nearest point on the rim of a cell is taken ``margin`` inside.
+        """
+        part = self._part(check_point('start', start, 2))
+        target = self.frame.to_kernel(check_point('goal', goal, 2))
+        if part == 0:
+            return None
+        nearest, offset = nearest_in_part(self.data.labels, part, target, self.margin)
+        return self.frame.from_kernel(nearest) if offset <= radius / self.scale else None
+
+    def rough_path(self, start: Floats, goal: Floats) -> Floats | None:
+        """Return the shortest path (m, 2) over a coarse lattice of the grid, kernel frame."""
+        path = rough_path(self.data, self._lattice, start, goal)
+        return path if len(path) else None
+
+    @cached_property
+    def _lattice(self) -> Lattice:
+        """Built for the first that optimizes: it takes as long as half of the rest of the map."""
+        return build_lattice(self.data)
+
+    @cached_property
+    def island_points(self) -> Floats:
+        """A point (k, 2) in each blocked part with free cells all around it, kernel frame."""
+        return island_points(self.data.free_distance == 0)
+
+    def _part(self, point: Floats) -> int:
+        """Part of free space that holds a point (2,) [m]: 0 where it is not free."""
+        return int(part_of(self.data, self.frame.to_kernel(point)))
+
+    # -- how far the walls are -------------------------------------------------------------------
+
+    @property
+    def walls(self) -> NDArray[np.uint8]:
+        """Distance (rows, columns) in king's moves to the nearest occupied cell, kernel frame."""
+        return self._wall_distance
+
+    def clearance(self, points: ArrayLike) -> Floats:
+        """Distance (k,) [m] from points (k, 2) to the nearest occupied square; inf without one."""
+        cells = self.frame.to_kernel(np.atleast_2d(check_points('points', points, 2)))
+        return point_clearance(self._wall_distance, cells) * self.scale
+
+    def path_clearance(self, path: ArrayLike) -> float:
+        """Return the least clearance [m] along the whole of a path (m, 2); inf without walls."""
+        points = check_points('path', path, 2)
+        if points.ndim != 2 or len(points) == 0 or not np.isfinite(points).all():
+            raise RequestError(f'path must be at least one finite point (m, 2), got {path!r}')
+        cells = self.frame.to_kernel(points)
+        return float(path_clearance(self._wall_distance, cells)) * self.scale

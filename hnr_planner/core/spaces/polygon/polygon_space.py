@@ -1,0 +1,164 @@
+"""A polygon with holes, or several, as a space of the plane."""
+
+from typing import Any, TYPE_CHECKING
+
+from hnr_planner.core.checks import check_number, check_point, check_points, Floats
+from hnr_planner.core.errors import SpaceError
+from hnr_planner.core.spaces.bounds import check_bounds
+from hnr_planner.core.spaces.polygon.edges import distance_to_edges, edges_in_cells, PolygonData
+from hnr_planner.core.spaces.primitives import part_of
+from hnr_planner.core.spaces.space import Space
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+if TYPE_CHECKING:
+    from shapely import LinearRing, MultiPolygon, Polygon
+
+#: Distance to an edge, in units in the last place of the largest coordinate, that counts as none.
+ROUNDING = 16
+
+
+class PolygonSpace(Space):
+    """
+    The inside of a shapely polygon or multipolygon.
+
+    Rings are closed: a point on one is not free, and a ray stops at a corner that it touches. The
+    polygons of a multipolygon may touch in points, where nothing passes.
+
+    Parameters
+    ----------
+    polygon : shapely.Polygon or shapely.MultiPolygon
+        Valid, with an inside. Heights are left out.
+
+    Raises
+    ------
+    SpaceError
+        When the polygon is empty or invalid, with shapely's reason.
+
+    Attributes
+    ----------
+    polygon : shapely.Polygon or shapely.MultiPolygon
+        What was given.
+
+    """
+
+    dim = 2
+
+    def __init__(self, polygon: 'Polygon | MultiPolygon') -> None:
+        self.polygon = polygon
+        self._polygons = _check_polygons(polygon)
+        check_bounds('the polygon', *self.bounds)
+        edges, numbers = _edges(self._polygons)
+        rounding = ROUNDING * float(np.spacing(np.abs(edges).max()))
+        self.data: PolygonData = edges_in_cells(edges, numbers, rounding)
+
+    @property
+    def bounds(self) -> tuple[Floats, Floats]:
+        """Lower and upper corner (2,)."""
+        corners = np.array(self.polygon.bounds)
+        return corners[:2], corners[2:]
+
+    @property
+    def margin(self) -> float:
+        """Distance from a chord's end at which one stops, never below what coordinates resolve."""
+        return max(super().margin, 8.0 * self.data.rounding)
+
+    @property
+    def typical_clearance(self) -> float:
+        """Mean distance to the walls of a corridor with as much area and boundary."""
+        return float(self.polygon.area / self.polygon.length / 2.0)
+
+    @property
+    def island_points(self) -> Floats:
+        """A point (k, 2) in each hole."""
+        from shapely import Polygon
+
+        holes = [Polygon(hole).representative_point() for _, hole in self._holes()]
+        return np.array([[point.x, point.y] for point in holes]).reshape(-1, 2)
+
+    def covers_box(self, lower: Floats, upper: Floats) -> bool:
+        """Say whether no ring comes into the box and its inside is within the polygon."""
+        from shapely import box
+
+        return bool(self.polygon.covers(box(*lower, *upper)))
+
+    def why_not_free(self, point: ArrayLike) -> str:
+        """Say in words why ``point`` (2,) is not free."""
+        from shapely import Point, Polygon
+
+        where = Point(check_point('point', point, 2))
+        for number, hole in self._holes():
+            if Polygon(hole).contains_properly(where):
+                return f'in a hole of {self._name(number)}'
+        lower, upper = self.bounds
+        place = 'on the boundary of' if self.polygon.intersects(where) else 'outside'
+        return (
+            f'{place} the polygon, which spans '
+            f'x {lower[0]:g}..{upper[0]:g}, y {lower[1]:g}..{upper[1]:g}'
+        )
+
+    def connected(self, a: ArrayLike, b: ArrayLike) -> bool:
+        """Say whether a path joins two free points: whether they lie in the same polygon."""
+        part = self._part(a)
+        return part != 0 and part == self._part(b)
+
+    def region_reachable(self, start: ArrayLike, goal: ArrayLike, radius: float) -> bool:
+        """Say whether the start's polygon comes nearer than ``radius`` to ``goal``."""
+        from shapely import Point
+
+        part = self._part(start)
+        if part == 0:
+            return False
+        distance = self._polygons[part - 1].distance(Point(check_point('goal', goal, 2)))
+        return bool(distance < check_number('radius', radius, 0.0))
+
+    def clearance(self, points: ArrayLike) -> Floats:
+        """Distance (k,) from points (k, 2) to the nearest ring; 0 where they are not free."""
+        points = np.atleast_2d(check_points('points', points, 2))
+        return distance_to_edges(self.data.edges, points) * self.contains(points)
+
+    def _part(self, point: ArrayLike) -> int:
+        """Return the number of the polygon that holds a point (2,), from 1; 0 for none."""
+        return int(part_of(self.data, check_point('point', point, 2)))
+
+    def _holes(self) -> list[tuple[int, 'LinearRing']]:
+        """Return the rings that are holes, each with the number of its polygon."""
+        return [
+            (number, hole)
+            for number, polygon in enumerate(self._polygons, start=1)
+            for hole in polygon.interiors
+        ]
+
+    def _name(self, number: int) -> str:
+        return 'the polygon' if len(self._polygons) == 1 else f'polygon {number - 1}'
+
+
+def _check_polygons(polygon: Any) -> list['Polygon']:
+    """Return the polygons of a valid geometry, each seen counter-clockwise, or SpaceError."""
+    from shapely import MultiPolygon, Polygon
+    from shapely.geometry.polygon import orient
+    from shapely.validation import explain_validity
+
+    if not isinstance(polygon, Polygon | MultiPolygon):
+        raise SpaceError(f'polygon must be a shapely Polygon or MultiPolygon, got {polygon!r}')
+    if polygon.is_empty:
+        raise SpaceError('the polygon must have an inside, but it is empty')
+    if not polygon.is_valid:
+        raise SpaceError(
+            f'the polygon must be valid, but shapely says: {explain_validity(polygon)}'
+        )
+    polygons = [polygon] if isinstance(polygon, Polygon) else polygon.geoms
+    return [orient(each) for each in polygons if not each.is_empty]
+
+
+def _edges(polygons: list['Polygon']) -> tuple[Floats, NDArray[np.int32]]:
+    """Return edges (m, 4) with the inside on their left, and the polygon (m,) of each, from 1."""
+    edges, numbers = [], []
+    for number, polygon in enumerate(polygons, start=1):
+        for ring in (polygon.exterior, *polygon.interiors):
+            corners = np.asarray(ring.coords)[:, :2]
+            of_ring = np.hstack([corners[:-1], corners[1:]])
+            of_ring = of_ring[(of_ring[:, :2] != of_ring[:, 2:]).any(axis=1)]
+            edges.append(of_ring)
+            numbers.append(np.full(len(of_ring), number, dtype=np.int32))
+    return np.concatenate(edges), np.concatenate(numbers)

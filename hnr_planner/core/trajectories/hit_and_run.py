@@ -1,0 +1,67 @@
+"""
+Hit-and-Run under a controller (paper, Section 5).
+
+The desired position is a uniform point of a random chord through the present position, the desired
+velocity uniform in the ball of velocities; from where the controller comes to, the next is drawn.
+"""
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+from hnr_planner.core.kernels.borrowed import borrowed
+from hnr_planner.core.kernels.kernel import kernel
+from hnr_planner.core.kernels.streams import Stream
+from hnr_planner.core.sampling.draws import draw_in_ball, hit_and_run_step
+from hnr_planner.core.trajectories.problem import KinodynamicProblem
+from hnr_planner.core.trajectories.steps import (
+    drive,
+    DrivenPlanner,
+    DrivenSearch,
+)
+import numpy as np
+
+
+@dataclass(frozen=True)
+class KinodynamicHitAndRun(DrivenPlanner):
+    """The paper's Hit-and-Run for systems; settings as in ``DrivenPlanner``."""
+
+    name: ClassVar[str] = 'kinodynamic_hit_and_run'
+
+    def start(self, problem: KinodynamicProblem, rng: Stream) -> 'KinodynamicHitAndRunSearch':
+        """Start a chain at the problem's start."""
+        return KinodynamicHitAndRunSearch(problem, self.driving, rng)
+
+
+@dataclass
+class KinodynamicHitAndRunSearch(DrivenSearch):
+    """A chain under way."""
+
+    def advance(self, n_iterations: int) -> None:
+        """Handle at most ``n_iterations`` further proposals."""
+        if self.solved:
+            return
+        self._make_room(n_iterations)
+        self._n_rows, taken, n_steps, self.solved = _walk(
+            self.problem, self.driving, self.rng, self._steps, self._n_rows, n_iterations
+        )
+        self.iterations += taken
+        self.n_steps += n_steps
+
+
+@kernel
+def _walk(problem, driving, rng, steps, n_rows, n_iterations):
+    """Walk on: (rows, transitions, steps tried, whether the goal is reached)."""
+    problem, rng, steps = borrowed(problem), borrowed(rng), borrowed(steps)
+    geometric, n_steps = problem.geometric, 0
+    dim = len(geometric.goal)
+    position, velocity = np.empty(dim), np.empty(dim)
+    for k in range(n_iterations):
+        hit_and_run_step(geometric.space, steps.states[n_rows - 1, :dim], rng, position)
+        draw_in_ball(problem.system.max_speed, rng, velocity)
+        n_rows, tried, reached = drive(
+            problem, driving, steps, n_rows, n_rows - 1, position, velocity
+        )
+        n_steps += tried
+        if reached:
+            return n_rows, k + 1, n_steps, True
+    return n_rows, n_iterations, n_steps, False

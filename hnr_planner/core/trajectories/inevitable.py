@@ -1,0 +1,100 @@
+"""
+Collisions that cannot be avoided any more, proved from the stopping distance.
+
+Whatever the control, the position at time ``t`` lies in the disc of radius ``a t^2 / 2`` around
+``x + v t``, where ``a`` is the largest acceleration. On a grid the free cells that the robot may
+be in are followed from one slice of time to the next: those of the slice's discs that free cells
+join to the ones before. Once none is left, a collision has happened. In every space the bounds are
+walls: nobody stops before a wall that is nearer than the stopping distance ``v^2 / (2 a)``.
+"""
+
+import math
+from typing import Any
+
+from hnr_planner.core.checks import Floats
+from hnr_planner.core.kernels.kernel import kernel
+from hnr_planner.core.spaces.grid.traversal import GridData
+import numpy as np
+
+#: Slices of the time after which every disc has grown over the place that it began at.
+SLICES = 96
+
+
+def is_collision_inevitable(
+    space: Any, bounds: tuple[Floats, Floats], x: Floats, v: Floats, acceleration: float
+) -> bool:
+    """Say whether a collision is proved to come, in a compiled space; False is no promise."""
+    lower, upper = bounds
+    stop = x + v * np.abs(v) / (2.0 * acceleration)
+    if (stop <= lower).any() or (stop >= upper).any():
+        return True
+    return isinstance(space, GridData) and _is_trapped(space.free_distance, x, v, acceleration)
+
+
+def compile_inevitable(space: Any) -> None:
+    """Compile the proof for a kind of space, on a robot at rest in the corner."""
+    if isinstance(space, GridData):
+        _is_trapped(space.free_distance, np.ones(2), np.zeros(2), 1.0)
+
+
+@kernel
+def _is_trapped(free_distance, x, v, acceleration):
+    """Follow the cells that the robot may be in, slice by slice."""
+    rows, columns = free_distance.shape
+    speed = math.hypot(v[0], v[1])
+    duration = 2.0 * speed / acceleration / SLICES
+    here, stack = (
+        np.zeros((rows, columns), dtype=np.bool_),
+        np.empty((rows * columns, 2), np.int64),
+    )
+    cells = np.empty((rows * columns, 2), dtype=np.int64)
+    cells[0, 0], cells[0, 1] = math.floor(x[1]), math.floor(x[0])
+    n = 1
+    for k in range(SLICES):
+        middle, end = (k + 0.5) * duration, (k + 1) * duration
+        radius = acceleration * end * end / 2.0 + speed * duration / 2.0
+        n = _spread(
+            free_distance,
+            x[0] + middle * v[0],
+            x[1] + middle * v[1],
+            radius,
+            cells,
+            n,
+            here,
+            stack,
+        )
+        if n == 0:
+            return True
+    return False
+
+
+@kernel
+def _spread(free_distance, x, y, radius, cells, n, here, stack):
+    """Spread from those of ``n`` cells that a disc touches over the free cells that it touches."""
+    waiting, found = 0, 0
+    for k in range(n):
+        if _touches(cells[k, 0], cells[k, 1], x, y, radius):
+            stack[waiting] = cells[k]
+            here[cells[k, 0], cells[k, 1]] = True
+            waiting += 1
+    while waiting > 0:
+        waiting -= 1
+        row, column = stack[waiting]
+        cells[found, 0], cells[found, 1] = row, column
+        found += 1
+        for i, j in ((row, column - 1), (row, column + 1), (row - 1, column), (row + 1, column)):
+            if free_distance[i, j] > 0 and not here[i, j] and _touches(i, j, x, y, radius):
+                here[i, j] = True
+                stack[waiting, 0], stack[waiting, 1] = i, j
+                waiting += 1
+    for k in range(found):
+        here[cells[k, 0], cells[k, 1]] = False
+    return found
+
+
+@kernel
+def _touches(row, column, x, y, radius):
+    """Say whether a disc touches a cell."""
+    dx = max(column - x, max(x - column - 1.0, 0.0))
+    dy = max(row - y, max(y - row - 1.0, 0.0))
+    return dx * dx + dy * dy <= radius * radius

@@ -1,0 +1,178 @@
+"""
+Smoothing in time: a motion of the double integrator becomes shorter, never longer.
+
+Two states of the motion are connected directly, or through a state near one between them, and what
+is free and faster takes the place of the part between (after Hauser and Ng-Thow-Hing, 2010). The
+end may lie anywhere in the goal region, at any speed that is allowed there.
+"""
+
+import math
+
+from hnr_planner.core.kernels.borrowed import borrowed
+from hnr_planner.core.kernels.kernel import kernel
+from hnr_planner.core.kernels.streams import normal, Stream, uniform
+from hnr_planner.core.sampling.draws import draw_in_ball
+from hnr_planner.core.systems.primitives import contact, move
+from hnr_planner.core.trajectories.connection import connect, empty_connection
+from hnr_planner.core.trajectories.problem import is_at_goal, KinodynamicProblem, Motion
+import numpy as np
+
+#: Part of the proposals that reach to the end, and that go through a state between.
+TO_END, THROUGH = 0.2, 0.6
+#: States between are moved by up to what acceleration does in the time, down to this part of it.
+LEAST_SHIFT = 1e-3
+#: Least gain, as a part of the duration: what is less is rounding before long.
+LEAST_GAIN = 1e-6
+
+
+def shorten_in_time(
+    problem: KinodynamicProblem, motion: Motion, rng: Stream, proposals: int
+) -> Motion:
+    """Return a motion from the same start into the same goal region, never longer."""
+    return Motion(*_shorten(problem, *motion, rng, proposals))
+
+
+@kernel
+def _shorten(problem, durations, states, controls, rng, proposals):
+    problem, rng = borrowed(problem), borrowed(rng)
+    system, dim = problem.system, controls.shape[1]
+    first, second = empty_connection(dim), empty_connection(dim)
+    a, between, b = np.empty(2 * dim), np.empty(2 * dim), np.empty(2 * dim)
+    total = durations.sum()
+    for _ in range(proposals):
+        window = total * uniform(rng) ** 2
+        to_end = uniform(rng) < TO_END
+        begin = total - window if to_end else uniform(rng) * (total - window)
+        i, after_i = _locate(durations, begin)
+        j, after_j = _locate(durations, begin + window)
+        if to_end:
+            j, after_j = len(durations) - 1, durations[-1]
+        longest = window - LEAST_GAIN * total
+        move(system, states[i], controls[i], after_i, a)
+        move(system, states[j], controls[j], after_j, b)
+        if to_end:
+            _draw_end(problem, rng, states[-1], b)
+        if uniform(rng) < THROUGH:
+            k, after_k = _locate(durations, begin + uniform(rng) * window)
+            move(system, states[k], controls[k], after_k, between)
+            _shift(system, rng, window, between)
+            there = connect(system, a, between, longest, first)
+            if there == math.inf:
+                continue
+            onward = connect(system, between, b, longest - there, second)
+            if onward == math.inf:
+                continue
+            if not (_is_free(problem, a, first) and _is_free(problem, between, second)):
+                continue
+        else:
+            if connect(system, a, b, longest, first) == math.inf:
+                continue
+            if not _is_free(problem, a, first):
+                continue
+            second.n[0] = 0
+        durations, states, controls = _spliced(
+            system,
+            durations,
+            states,
+            controls,
+            (i, after_i, j, after_j),
+            (a, between, b),
+            (first, second),
+        )
+        total = durations.sum()
+    return durations, states, controls
+
+
+@kernel
+def _locate(durations, t):
+    """Return the step that is under way at a time, and the time since it began."""
+    last = len(durations) - 1
+    for k in range(last):
+        if t < durations[k]:
+            return k, t
+        t -= durations[k]
+    return last, min(t, durations[last])
+
+
+@kernel
+def _shift(system, rng, window, state):
+    """Move a state at random, as far as acceleration may have moved it in the time or less."""
+    dim = len(state) // 2
+    part = LEAST_SHIFT ** uniform(rng)
+    pull = part * system.max_acceleration * window
+    squared = 0.0
+    for i in range(dim):
+        state[i] += 0.125 * pull * window * normal(rng)
+        state[dim + i] += 0.5 * pull * normal(rng)
+        squared += state[dim + i] ** 2
+    if squared > system.max_speed**2:
+        for i in range(dim):
+            state[dim + i] *= system.max_speed / math.sqrt(squared)
+
+
+@kernel
+def _draw_end(problem, rng, last, end):
+    """Draw an end in the goal region and no faster than allowed, near the last one or anywhere."""
+    geometric, dim = problem.geometric, len(problem.geometric.goal)
+    part = LEAST_SHIFT ** uniform(rng) if uniform(rng) < 0.5 else 1.0
+    end[:] = last
+    offset = np.empty(dim)
+    if geometric.goal_radius > 0.0:
+        draw_in_ball(geometric.goal_radius, rng, offset)
+        for i in range(dim):
+            end[i] += part * (geometric.goal[i] + offset[i] - end[i])
+    fastest = min(problem.goal_speed, problem.system.max_speed)
+    if fastest > 0.0:
+        draw_in_ball(fastest, rng, offset)
+        for i in range(dim):
+            end[dim + i] += part * (offset[i] - end[dim + i])
+    if not is_at_goal(problem, end):
+        end[:] = last
+
+
+@kernel
+def _is_free(problem, state, connection):
+    """Say whether a connection from ``state`` meets no boundary."""
+    at, end = state.copy(), np.empty(len(state))
+    for k in range(connection.n[0]):
+        duration, control = connection.durations[k], connection.controls[k]
+        if contact(problem.system, problem.geometric.space, at, control, duration) <= duration:
+            return False
+        move(problem.system, at, control, duration, end)
+        at[:] = end
+    return True
+
+
+@kernel
+def _spliced(system, durations, states, controls, part, ends, connections):
+    """Return the motion with a part of it replaced by one connection or two."""
+    i, after_i, j, after_j = part
+    a, between, b = ends
+    rest = durations[j] - after_j
+    keeps = rest > 0.0 and j < len(durations)
+    rows = i + 1 + connections[0].n[0] + connections[1].n[0] + 1 + len(durations) - 1 - j
+    new_durations = np.empty(rows)
+    new_states, new_controls = np.empty((rows + 1, len(a))), np.empty((rows, controls.shape[1]))
+    n = i
+    new_durations[:n], new_states[:n], new_controls[:n] = durations[:n], states[:n], controls[:n]
+    if after_i > 0.0:
+        new_durations[n], new_states[n], new_controls[n] = after_i, states[i], controls[i]
+        n += 1
+    for c in range(2):
+        connection = connections[c]
+        if connection.n[0] > 0:
+            new_states[n] = a if c == 0 else between
+        for k in range(connection.n[0]):
+            new_durations[n], new_controls[n] = connection.durations[k], connection.controls[k]
+            move(system, new_states[n], new_controls[n], new_durations[n], new_states[n + 1])
+            n += 1
+    new_states[n] = b
+    if keeps:
+        new_durations[n], new_controls[n] = rest, controls[j]
+        n += 1
+    for k in range(j + 1, len(durations)):
+        new_durations[n], new_states[n], new_controls[n] = durations[k], states[k], controls[k]
+        n += 1
+    if keeps or j + 1 < len(durations):
+        new_states[n] = states[-1]
+    return new_durations[:n], new_states[: n + 1], new_controls[:n]

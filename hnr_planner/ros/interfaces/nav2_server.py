@@ -1,0 +1,225 @@
+"""
+What Nav2 asks its planner server for: two actions and a service, where `nav2_msgs` is there.
+
+Each action has one goal at a time, as in Nav2: a new one takes the place of the one before.
+"""
+
+from collections.abc import Callable, Sequence
+from contextlib import suppress
+import threading
+import time
+from typing import Any
+
+from builtin_interfaces.msg import Duration
+from geometry_msgs.msg import PoseStamped
+from hnr_planner.ros.interfaces.nav2_goals import error_of, from_robot_on, request_of, robot_pose
+from hnr_planner.ros.interfaces.request_server import RequestServer
+from hnr_planner.server.outcomes import Refusal
+from hnr_planner.server.path_validity import blocked_poses
+from hnr_planner.server.respond import NewestMap, ToFrame
+from hnr_planner.server.responses import PlanResponse
+from hnr_planner.server.settings import Settings
+from nav_msgs.msg import Path
+import numpy as np
+from rclpy.action import ActionServer, CancelResponse
+from rclpy.action.server import ServerGoalHandle
+from rclpy.callback_groups import ReentrantCallbackGroup
+from rclpy.duration import Duration as RclpyDuration
+from rclpy.node import Node
+
+try:
+    from nav2_msgs.action import ComputePathThroughPoses, ComputePathToPose
+    from nav2_msgs.srv import IsPathValid
+except ImportError:  # a ROS from wheels has none
+    HAVE_NAV2 = False
+else:
+    HAVE_NAV2 = True
+
+RESULTS_KEPT = 10
+"""How long [s] a result waits to be fetched, as in Nav2: a path is large."""
+LONGEST_CHANGE = 1.0
+"""How long [s] rclpy may take to enter the cancellation that it has announced."""
+
+
+class Nav2Server:
+    """
+    Serves `compute_path_to_pose`, `compute_path_through_poses` and `is_path_valid`.
+
+    Parameters
+    ----------
+    node : Node
+        Offers them.
+    server : RequestServer
+        Plans.
+    settings : callable
+        Returns the parameters in force.
+    newest_map : callable
+        Returns the map in use, or raises Refusal.
+    to_frame : callable
+        Brings a pose into a frame, or raises Refusal.
+
+    """
+
+    def __init__(
+        self,
+        node: Node,
+        server: RequestServer,
+        settings: Callable[[], Settings],
+        newest_map: NewestMap,
+        to_frame: ToFrame,
+    ) -> None:
+        self._settings = settings
+        self._newest_map = newest_map
+        self._to_frame = to_frame
+        self._logger = node.get_logger()
+        for kind, name, poses_of in (
+            (ComputePathToPose, 'compute_path_to_pose', lambda goal: [goal.goal]),
+            (ComputePathThroughPoses, 'compute_path_through_poses', lambda goal: goal.goals),
+        ):
+            _Action(node, kind, name, poses_of, server, settings)
+        node.create_service(
+            IsPathValid, 'is_path_valid', self._judge, callback_group=ReentrantCallbackGroup()
+        )
+
+    def _judge(
+        self, request: 'IsPathValid.Request', response: 'IsPathValid.Response'
+    ) -> 'IsPathValid.Response':
+        """Say whether a path is free on the newest map, from where the robot is."""
+        response.is_valid = False
+        try:
+            snapshot = self._newest_map()
+        except Refusal as refusal:
+            self._logger.warning(f'is_path_valid: {refusal.outcome.name}: {refusal.why}')
+            return response
+        places = [stamped.pose.position for stamped in request.path.poses]
+        points = np.array([(place.x, place.y) for place in places]).reshape(-1, 2)
+        frame = request.path.header.frame_id or snapshot.frame
+        blocked = blocked_poses(points, frame, snapshot)
+        with suppress(Refusal):  # no word of where the robot is: all of the path counts
+            robot = self._to_frame(robot_pose(self._settings()), snapshot.frame)
+            passed = from_robot_on(points, robot) if len(points) else 0
+            blocked = [number for number in blocked if number >= passed]
+        response.is_valid = len(points) > 0 and not blocked
+        response.invalid_pose_indices = blocked
+        return response
+
+
+class _Goal:
+    """A goal under way; its search ends when `cancel` is set, for one of two reasons."""
+
+    def __init__(self) -> None:
+        self.cancel = threading.Event()
+        self.cancelled = False
+        self.preempted = False
+
+
+class _Action:
+    """
+    One of the two actions.
+
+    Parameters
+    ----------
+    node : Node
+        Offers it.
+    kind : type
+        Its type, of `nav2_msgs`.
+    name : str
+        Its name.
+    poses_of : callable
+        Returns the poses of a goal.
+    server : RequestServer
+        Plans.
+    settings : callable
+        Returns the parameters in force.
+
+    """
+
+    def __init__(
+        self,
+        node: Node,
+        kind: Any,
+        name: str,
+        poses_of: Callable[[Any], Sequence[PoseStamped]],
+        server: RequestServer,
+        settings: Callable[[], Settings],
+    ) -> None:
+        self._kind = kind
+        self._name = name
+        self._poses_of = poses_of
+        self._server = server
+        self._settings = settings
+        self._goals: dict[bytes, _Goal] = {}
+        self._one_at_a_time = threading.Lock()
+        ActionServer(
+            node,
+            kind,
+            name,
+            self._execute,
+            handle_accepted_callback=self._begin,
+            cancel_callback=self._cancel,
+            callback_group=ReentrantCallbackGroup(),
+            result_timeout=RESULTS_KEPT,
+        )
+
+    def _begin(self, handle: ServerGoalHandle) -> None:
+        """Begin a goal; one that is under way ends for it."""
+        with self._one_at_a_time:
+            for other in self._goals.values():
+                other.preempted = True
+                other.cancel.set()
+            self._goals[_key(handle)] = _Goal()
+        handle.execute()
+
+    def _cancel(self, handle: ServerGoalHandle) -> CancelResponse:
+        """End the search for a goal."""
+        with self._one_at_a_time:
+            goal = self._goals.get(_key(handle))
+            if goal is None:
+                return CancelResponse.REJECT
+            goal.cancelled = True
+            goal.cancel.set()
+            return CancelResponse.ACCEPT
+
+    def _execute(self, handle: ServerGoalHandle) -> Any:
+        """Plan for a goal, bring it to its end and return its result."""
+        goal = self._goals[_key(handle)]
+        handle.publish_feedback(self._kind.Feedback())
+        request = request_of(handle.request, self._poses_of(handle.request), self._settings())
+        report, path = self._server.plan(self._name, request, goal.cancel)
+        self._server.answer_sent()  # the result leaves when this returns
+        with self._one_at_a_time:
+            del self._goals[_key(handle)]
+        if goal.cancelled:
+            _wait_for_cancellation(handle)
+        if handle.is_cancel_requested:
+            handle.canceled()
+        elif report.solved:
+            handle.succeed()
+        else:
+            handle.abort()
+        return self._result(report, path, goal.preempted)
+
+    def _result(self, report: PlanResponse, path: Path, preempted: bool) -> Any:
+        """Return the result of a goal."""
+        result = self._kind.Result(path=path, planning_time=_duration(report.elapsed))
+        result.error_code = getattr(result, error_of(report))
+        if not report.solved:
+            why = 'a newer goal took its place' if preempted else report.why
+            result.error_msg = f'{report.outcome.name}: {why}'
+        return result
+
+
+def _key(handle: ServerGoalHandle) -> bytes:
+    return bytes(handle.goal_id.uuid)
+
+
+def _wait_for_cancellation(handle: ServerGoalHandle) -> None:
+    """Wait until rclpy counts a goal as cancelled: it asks us before it does."""
+    deadline = time.monotonic() + LONGEST_CHANGE
+    while not handle.is_cancel_requested and time.monotonic() < deadline:
+        time.sleep(1e-3)
+
+
+def _duration(seconds: float) -> Duration:
+    """Return a length of time as a message."""
+    return RclpyDuration(nanoseconds=round(1e9 * seconds)).to_msg()

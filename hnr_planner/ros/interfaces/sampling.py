@@ -1,0 +1,79 @@
+"""
+What draws the free space of the map, without ROS: `draw(settings, newest_map, cancel)`.
+
+As with paths, whatever happens the caller gets a report: the name of the outcome, and why.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+import threading
+import time
+
+from hnr_planner.core import Cancelled, FreeSpaceDraws, sample_free_space, SpaceError, StuckError
+from hnr_planner.server.map_store import MapSnapshot
+from hnr_planner.server.outcomes import Outcome, Refusal
+from hnr_planner.server.responses import SampleResponse
+from hnr_planner.server.settings import Settings
+
+
+def draw(
+    settings: Settings, newest_map: Callable[[], MapSnapshot], cancel: threading.Event
+) -> SampleResponse:
+    """
+    Return uniform draws of all free space of the newest map, or why there are none.
+
+    Parameters
+    ----------
+    settings : Settings
+        The parameters in force.
+    newest_map : callable
+        Returns the map in use, or raises Refusal.
+    cancel : threading.Event
+        Ends the work when it is set.
+
+    """
+    began = time.monotonic()
+    snapshot = None
+    try:
+        snapshot = newest_map()
+        draws = _draw(settings, snapshot, _Ending(cancel, began + settings.time_limit))
+        why = f'{_asked_for(settings)} by {settings.sample_walk}, seed {draws.seed}'
+        report = SampleResponse(Outcome.SAMPLED, why, settings, draws, snapshot=snapshot)
+    except Refusal as refusal:
+        report = SampleResponse(refusal.outcome, refusal.why, settings, snapshot=snapshot)
+    return replace(report, elapsed=time.monotonic() - began)
+
+
+@dataclass(frozen=True)
+class _Ending:
+    """Set when the request is cancelled, or its time is up."""
+
+    cancel: threading.Event
+    deadline: float
+
+    def is_set(self) -> bool:
+        return self.cancel.is_set() or time.monotonic() >= self.deadline
+
+
+def _draw(settings: Settings, snapshot: MapSnapshot, ending: _Ending) -> FreeSpaceDraws:
+    """Return the draws, or raise Refusal (BAD_REQUEST, CANCELLED, TIMEOUT)."""
+    try:
+        return sample_free_space(snapshot.space, cancel=ending, **settings.sample_arguments)
+    except SpaceError as error:
+        raise Refusal(Outcome.BAD_REQUEST, f'nothing can be drawn of this map: {error}') from error
+    except StuckError as error:
+        raise Refusal(Outcome.BAD_REQUEST, str(error)) from error
+    except Cancelled as error:
+        if ending.cancel.is_set():
+            raise Refusal(Outcome.CANCELLED, 'the sampling was cancelled') from error
+        raise Refusal(
+            Outcome.TIMEOUT,
+            f'the time limit of {settings.time_limit:g} s passed before there were '
+            f'{_asked_for(settings)}',
+        ) from error
+
+
+def _asked_for(settings: Settings) -> str:
+    """Return what the settings ask for, in words."""
+    thin = settings.sample_thin
+    return f'{settings.sample_count} draws' + (f', {thin} steps apart' if thin > 1 else '')

@@ -1,0 +1,48 @@
+"""`diagnostic_msgs/DiagnosticArray`: the outcome of a request, and the health of the node."""
+
+from collections.abc import Mapping
+
+from builtin_interfaces.msg import Time
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
+from hnr_planner.server.outcomes import Outcome
+from hnr_planner.server.responses import Response
+from std_msgs.msg import Header
+
+
+def outcome_message(report: Response, name: str, stamp: Time) -> DiagnosticArray:
+    """Return the outcome of one request; `name` says which node and service answered it."""
+    level = DiagnosticStatus.OK if report.outcome.is_success else DiagnosticStatus.WARN
+    return _array(level, name, report.outcome.name, report.values, report.frame, stamp)
+
+
+def health_message(
+    healthy: bool, name: str, message: str, values: Mapping[str, str], stamp: Time
+) -> DiagnosticArray:
+    """Return the health of the node in the form that diagnostic viewers show."""
+    level = DiagnosticStatus.OK if healthy else DiagnosticStatus.WARN
+    return _array(level, name, message, values, '', stamp)
+
+
+def read_outcome(message: DiagnosticArray) -> tuple[Outcome, dict[str, str]]:
+    """Return the name and the values of an outcome that was received."""
+    status = message.status[0]
+    return Outcome[status.message], {item.key: item.value for item in status.values}
+
+
+def _array(
+    level: bytes,
+    name: str,
+    message: str,
+    values: Mapping[str, str],
+    frame: str,
+    stamp: Time,
+) -> DiagnosticArray:
+    """Return an array of one status."""
+    status = DiagnosticStatus(
+        level=level,
+        name=name,
+        message=message,
+        hardware_id='',
+        values=[KeyValue(key=key, value=value) for key, value in values.items()],
+    )
+    return DiagnosticArray(header=Header(stamp=stamp, frame_id=frame), status=[status])

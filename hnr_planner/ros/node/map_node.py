@@ -1,0 +1,100 @@
+"""The executable `map_node`: publishes a map file, for those who have no map_server."""
+
+from collections.abc import Sequence
+import sys
+from typing import NoReturn
+
+from hnr_planner.maps import load_map, MapFileError
+from hnr_planner.ros.interfaces.publisher import latched
+from hnr_planner.ros.messages.maps import message_from_grid
+from hnr_planner.ros.node.process import run
+from hnr_planner.server.map_store import Grid
+from nav_msgs.msg import OccupancyGrid
+from nav_msgs.srv import GetMap
+from rcl_interfaces.msg import ParameterDescriptor, SetParametersResult
+from rclpy.node import Node
+from rclpy.parameter import Parameter
+
+NAME = 'map_source'
+PARAMETERS = (
+    ('yaml_filename', '', 'Map file: YAML of map_server, or .map of the Moving AI benchmarks.'),
+    ('frame_id', 'map', 'Frame of the map.'),
+)
+"""Name, default and description."""
+
+
+class MapSource(Node):
+    """
+    Publishes the map file of the parameter `yaml_filename`, latched, and hands it out.
+
+    Raises
+    ------
+    MapFileError
+        When the file cannot be used at the start. Later, a file that cannot be used is refused
+        when the parameter is set, and the map that is loaded stays.
+
+    """
+
+    def __init__(self) -> None:
+        super().__init__(NAME)
+        for name, default, description in PARAMETERS:
+            self.declare_parameter(name, default, ParameterDescriptor(description=description))
+        self._publisher = self.create_publisher(OccupancyGrid, 'map', latched(1))
+        self._message = self._load({})
+        self._next = self._message
+        self._publish()
+        self.add_on_set_parameters_callback(self._check)
+        self.add_post_set_parameters_callback(self._accept)
+        self.create_service(GetMap, '~/map', self._answer)
+
+    def _load(self, changes: dict[str, str]) -> OccupancyGrid:
+        """Return the map for the parameters with `changes`, or raise MapFileError."""
+        now = {name: self.get_parameter(name).value for name, _, _ in PARAMETERS}
+        wanted = now | changes
+        filename = wanted['yaml_filename']
+        if not filename:
+            raise MapFileError('the parameter yaml_filename is empty: no map file is given')
+        loaded = load_map(filename)
+        grid = Grid(loaded.data, loaded.resolution, loaded.origin, wanted['frame_id'])
+        self.get_logger().info(f'loaded {filename}: {grid}')
+        return message_from_grid(grid, self.get_clock().now().to_msg())
+
+    def _publish(self) -> None:
+        self._publisher.publish(self._message)
+        self.get_logger().info(f'ready: the map is published on {self._publisher.topic_name}')
+
+    def _check(self, parameters: Sequence[Parameter]) -> SetParametersResult:
+        """Load what the changed parameters name, or refuse them."""
+        changes = _ours(parameters)
+        if changes:
+            try:
+                self._next = self._load(changes)
+            except MapFileError as error:
+                return SetParametersResult(successful=False, reason=str(error))
+        return SetParametersResult(successful=True)
+
+    def _accept(self, parameters: Sequence[Parameter]) -> None:
+        """Publish what was loaded for the parameters that were just set."""
+        if _ours(parameters):
+            self._message = self._next
+            self._publish()
+
+    def _answer(self, _request: GetMap.Request, response: GetMap.Response) -> GetMap.Response:
+        """Hand out the map."""
+        response.map = self._message
+        return response
+
+
+def _ours(parameters: Sequence[Parameter]) -> dict[str, str]:
+    """Return the values of those parameters that decide the map."""
+    names = {name for name, _, _ in PARAMETERS}
+    return {item.name: item.value for item in parameters if item.name in names}
+
+
+def main() -> NoReturn:
+    """Run the map source until a signal comes, and exit."""
+    sys.exit(run(NAME, MapSource, threads=2))
+
+
+if __name__ == '__main__':
+    main()

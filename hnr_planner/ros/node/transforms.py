@@ -1,0 +1,71 @@
+"""Poses from the frames that they are given in to that of the map, by tf2 where that is there."""
+
+from dataclasses import replace
+
+from hnr_planner.ros.messages.orientations import LEVEL, normalised, product, rotated
+from hnr_planner.server.outcomes import Outcome, Refusal
+from hnr_planner.server.requests import Pose
+from hnr_planner.server.respond import only_same_frame
+from rclpy.duration import Duration
+from rclpy.node import Node
+from rclpy.time import Time
+
+try:
+    from tf2_ros import Buffer, TransformException, TransformListener
+except ImportError:  # a ROS from wheels has none
+    HAVE_TF = False
+else:
+    HAVE_TF = True
+
+
+class Transforms:
+    """
+    Listens to transforms from when it is made until `close`.
+
+    Without tf2 no pose can be in another frame than the map's.
+    """
+
+    def __init__(self, node: Node) -> None:
+        if HAVE_TF:
+            self._buffer = Buffer()
+            self._listener = TransformListener(self._buffer, node)
+
+    def close(self) -> None:
+        """Listen no more."""
+        if HAVE_TF:
+            self._listener.unregister()
+
+    def bring(self, pose: Pose, frame: str, patience: float) -> Pose:
+        """
+        Return `pose` in `frame`; a transform may take `patience` [s] to come.
+
+        Raises
+        ------
+        Refusal
+            BAD_FRAME, with words that follow on the name of the pose.
+
+        """
+        if not HAVE_TF or pose.frame in ('', frame):
+            return only_same_frame(pose, frame)
+        try:
+            found = self._buffer.lookup_transform(
+                frame,
+                pose.frame,
+                Time(nanoseconds=pose.stamp),
+                timeout=Duration(seconds=patience),
+            ).transform
+        except TransformException as error:
+            raise Refusal(
+                Outcome.BAD_FRAME,
+                f"is in frame '{pose.frame}', the map in '{frame}', and no transform leads from "
+                f'one to the other within {patience:g} s: {" ".join(str(error).split())}',
+            ) from error
+        shift, turn = found.translation, found.rotation
+        rotation = normalised((turn.x, turn.y, turn.z, turn.w)) or LEVEL
+        x, y, z = rotated(pose.position, rotation)
+        return replace(
+            pose,
+            position=(x + shift.x, y + shift.y, z + shift.z),
+            orientation=product(rotation, normalised(pose.orientation) or LEVEL),
+            frame=frame,
+        )

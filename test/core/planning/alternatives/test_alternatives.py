@@ -1,0 +1,327 @@
+"""Further paths: free, different by an independent count of windings, the shortest first."""
+
+from collections import deque
+from functools import partial
+from heapq import heappop, heappush
+from itertools import combinations, pairwise
+import math
+from test.brute_force import path_collisions
+from test.laws import maps
+import threading
+
+from hnr_planner import core
+from hnr_planner.core import ALGORITHMS, GridSpace, PlannerStatus, PlanResult, RequestError
+from hnr_planner.core.kernels.streams import stream
+from hnr_planner.core.planning.alternatives import alternatives as module
+from hnr_planner.core.planning.homology import islands_at, signature
+from hnr_planner.core.planning.postprocessing.simplify import shorten
+from hnr_planner.maps import load_map
+from hypothesis import given, settings, strategies
+import numpy as np
+from numpy.typing import NDArray
+import pytest
+
+Bools = NDArray[np.bool_]
+Floats = NDArray[np.float64]
+# No law here is about time, however busy the machine is.
+plan = partial(core.plan, time_limit=60.0)
+
+ORIGIN = (2.0, -1.0, 0.4)
+
+
+def three_blocks() -> Bools:
+    blocked = np.zeros((60, 60), dtype=bool)
+    blocked[24:36, 24:36] = blocked[42:54, 26:34] = blocked[6:18, 27:33] = True
+    return blocked
+
+
+BLOCKED = three_blocks()
+SPACE = GridSpace.from_blocked(BLOCKED, 0.1, ORIGIN)
+START, GOAL = SPACE.cell_centres(30, 3), SPACE.cell_centres(30, 56)
+
+
+# -- an independent judge ------------------------------------------------------------------------
+
+
+def islands(blocked: Bools) -> list[tuple[int, int]]:
+    """Return a (row, column) in each group of blocked cells not joined with the outside."""
+    ringed = np.pad(blocked, 1, constant_values=True)
+    seen = np.zeros_like(ringed)
+    found = []
+    for cell in [(0, 0), *map(tuple, np.argwhere(ringed).tolist())]:
+        if seen[cell]:
+            continue
+        found.append((cell[0] - 1, cell[1] - 1))
+        seen[cell] = True
+        waiting = deque([cell])
+        while waiting:
+            row, column = waiting.popleft()
+            for near in [(row + i, column + j) for i in (-1, 0, 1) for j in (-1, 0, 1)]:
+                inside = 0 <= near[0] < ringed.shape[0] and 0 <= near[1] < ringed.shape[1]
+                if inside and ringed[near] and not seen[near]:
+                    seen[near] = True
+                    waiting.append(near)
+    return found[1:]
+
+
+def windings(points: Floats, first: Floats, second: Floats) -> list[int]:
+    """Return how often the loop of two paths goes round each point, from the angles it turns."""
+    loop = np.concatenate([first, second[-2::-1]])
+    around = []
+    for point in points:
+        away = loop - point
+        angles = np.arctan2(*away.T[::-1])
+        turned = (np.diff(angles) + math.pi) % (2 * math.pi) - math.pi
+        around.append(round(float(turned.sum()) / (2 * math.pi)))
+    return around
+
+
+def crosses_itself(path: Floats) -> bool:
+    def side(a: Floats, b: Floats, x: Floats) -> float:
+        return (b[0] - a[0]) * (x[1] - a[1]) - (b[1] - a[1]) * (x[0] - a[0])
+
+    return any(
+        side(a, b, c) * side(a, b, d) < 0 and side(c, d, a) * side(c, d, b) < 0
+        for (a, b), (c, d) in combinations(pairwise(path), 2)
+    )
+
+
+def length(path: Floats) -> float:
+    return float(np.hypot(*np.diff(path, axis=0).T).sum())
+
+
+def check(space: GridSpace, result: PlanResult, n_paths: int) -> None:
+    """Hold every law of the answer to a request for alternatives."""
+    assert result.status is PlannerStatus.SOLVED
+    paths = result.paths
+    assert 1 <= len(paths) <= n_paths
+    assert paths[0] is result.path
+    assert result.length == pytest.approx(length(result.path), rel=1e-12)
+    lengths = [length(path) for path in paths]
+    assert lengths == sorted(lengths)
+    for path in paths:
+        assert path_collisions(path, space.blocked, space.resolution, space.origin) == []
+        np.testing.assert_array_equal(path[[0, -1]], result.path[[0, -1]])
+    assert not any(map(crosses_itself, paths[1:]))
+    centres = [space.cell_centres(*island) for island in islands(space.blocked)]
+    for first, second in combinations(paths, 2):
+        assert any(windings(centres, first, second))
+
+
+def lengths_over_cells(blocked: Bools, start: tuple, goal: tuple, n: int) -> list[float]:
+    """Return the lengths of the n shortest classes over the centres of neighbouring cells."""
+    rays = islands(blocked)
+
+    def passed(signature: tuple, column: int, row: int, step: int) -> tuple:
+        """Cross the rays that go up from the islands, from one column to the next."""
+        line = max(column, column + step)
+        return tuple(
+            count + step * (step != 0 and island[1] == line and island[0] < row)
+            for count, island in zip(signature, rays, strict=True)
+        )
+
+    waiting = [(0.0, start, (0,) * len(rays))]
+    known: dict[tuple, list] = {}
+    found = []
+    while len(found) < n:
+        far, (row, column), signature = heappop(waiting)
+        here = known.setdefault((row, column), [])
+        if signature in here or len(here) == 2 * n:
+            continue
+        here.append(signature)
+        if (row, column) == goal:
+            found.append(far)
+        for i, j in [(i, j) for i in (-1, 0, 1) for j in (-1, 0, 1) if i or j]:
+            cells = [(row + i, column), (row, column + j), (row + i, column + j)]
+            inside = all(0 <= r < blocked.shape[0] and 0 <= c < blocked.shape[1] for r, c in cells)
+            if inside and not any(blocked[cell] for cell in cells):
+                after = passed(signature, column, row, j)
+                heappush(waiting, (far + math.hypot(i, j), cells[2], after))
+    return found
+
+
+# -- what is found -------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize('seed', range(30))
+def test_three_blocks_have_three_ways_and_more(seed: int):
+    result = plan(SPACE, START, GOAL, alternatives=3, seed=seed)
+    check(SPACE, result, 3)
+    assert len(result.paths) == 3
+
+
+def test_they_are_the_shortest_ways_there_are():
+    """Held against all ways over cell centres, which are up to 8 % longer than taut ones."""
+    over_cells = lengths_over_cells(BLOCKED, (30, 3), (30, 56), 3)
+    for seed in range(20):
+        result = plan(SPACE, START, GOAL, alternatives=3, seed=seed)
+        check(SPACE, result, 3)
+        for path, cells in zip(result.paths, over_cells, strict=True):
+            assert 0.92 * cells <= length(path) / SPACE.resolution <= 1.01 * cells
+
+
+boxes = strategies.tuples(*[strategies.integers(4, 30)] * 2, *[strategies.integers(1, 9)] * 2)
+
+
+@settings(max_examples=60, deadline=None)
+@given(
+    strategies.lists(boxes, max_size=12),
+    strategies.integers(2, 5),
+    strategies.integers(0, 2**31),
+    strategies.sampled_from([(0.0, 0.0, 0.0), (3.0, -2.0, 2.5)]),
+)
+def test_on_any_map_they_are_free_different_and_in_order(rectangles, n_paths, seed, origin):
+    blocked = np.zeros((40, 40), dtype=bool)
+    for row, column, height, width in rectangles:
+        top, right = row + height, column + width
+        blocked[row:top, column:right] = True
+    space = GridSpace.from_blocked(blocked, 0.25, origin)
+    start, goal = space.cell_centres(2, 2), space.cell_centres(39, 39)
+    result = plan(space, start, goal, alternatives=n_paths, seed=seed)
+    check(space, result, n_paths)
+    assert len(result.paths) >= min(len(islands(blocked)) + 1, 2)
+
+
+@pytest.mark.parametrize('seed', range(10))
+def test_doors_between_rooms(seed: int):
+    blocked = maps.rooms(60, 80, 10, seed=4)
+    space = GridSpace.from_blocked(blocked, 0.1, ORIGIN)
+    ends = space.cell_centres(2, 2), space.cell_centres(57, 75)
+    result = plan(space, *ends, alternatives=3, seed=seed)
+    check(space, result, 3)
+    assert len(result.paths) == 3
+
+
+def test_a_real_floor_with_a_robot():
+    office = load_map('config/maps/office.yaml')
+    space = GridSpace.from_occupancy(
+        office.data, office.resolution, office.origin, robot_radius=0.22
+    )
+    for seed in range(2):
+        result = plan(space, (3.0, 22.0), (34.0, 5.0), alternatives=3, seed=seed)
+        check(space, result, 3)
+        assert len(result.paths) == 3
+
+
+def test_a_goal_in_sight_has_other_ways_too():
+    start, goal = SPACE.cell_centres(39, 3), SPACE.cell_centres(39, 56)
+    assert SPACE.is_motion_valid(start, goal)
+    result = plan(SPACE, start, goal, alternatives=3, seed=0)
+    check(SPACE, result, 3)
+    assert len(result.paths) == 3
+    assert result.length == pytest.approx(math.dist(start, goal))
+
+
+@pytest.mark.parametrize('algorithm', ALGORITHMS)
+def test_every_algorithm_has_them_and_the_same_seed_gives_the_same(algorithm: str):
+    request = {'algorithm': algorithm, 'alternatives': 3, 'seed': 5}
+    first, second = (plan(SPACE, START, GOAL, **request) for _ in range(2))
+    check(SPACE, first, 3)
+    assert not first.cut_by_time
+    assert first.iterations == second.iterations
+    for path, same in zip(first.paths, second.paths, strict=True):
+        np.testing.assert_array_equal(path, same)
+
+
+def test_ways_into_a_region_end_where_the_first_does():
+    for seed in range(10):
+        arguments = {'algorithm': 'rrt', 'goal_radius': 0.5, 'seed': seed}
+        result = plan(SPACE, START, GOAL, alternatives=3, **arguments)
+        check(SPACE, result, 3)
+        assert len(result.paths) == 3
+        assert math.dist(result.path[-1], GOAL) <= 0.5
+        np.testing.assert_array_equal(
+            result.path[-1], plan(SPACE, START, GOAL, **arguments).path[-1]
+        )
+
+
+def test_without_an_island_there_is_one_way_and_the_answer_says_so():
+    blocked = np.zeros((30, 30), dtype=bool)
+    blocked[:20, 15] = True
+    space = GridSpace.from_blocked(blocked)
+    result = plan(space, (5, 5), (25, 5), alternatives=3, seed=0)
+    check(space, result, 3)
+    assert len(result.paths) == 1
+    assert '1 of 3 paths' in result.message
+    assert plan(SPACE, START, START, alternatives=3, seed=0).length == 0.0
+
+
+def test_no_path_has_no_alternatives():
+    blocked = np.zeros((20, 20), dtype=bool)
+    blocked[:, 10] = True
+    result = plan(GridSpace.from_blocked(blocked), (5, 5), (15, 5), alternatives=3)
+    assert result.status is PlannerStatus.UNREACHABLE and result.paths == ()
+
+
+def test_a_cancellation_leaves_what_was_found():
+    cancel = threading.Event()
+    cancel.set()
+    start, goal = SPACE.cell_centres(39, 3), SPACE.cell_centres(39, 56)
+    result = plan(SPACE, start, goal, alternatives=3, cancel=cancel)
+    check(SPACE, result, 3)
+    assert result.cut_by_time and len(result.paths) == 1
+
+
+# -- each taut within its class ------------------------------------------------------------------
+
+
+def detour(beyond: float) -> Floats:
+    """Return a ragged path in cells that passes above the middle block, ``beyond`` it."""
+    steps = [(4, 30), (10, 26), (20, 34), (25, beyond), (30, 38), (35, beyond), (45, 25), (56, 30)]
+    return np.array(steps, dtype=float)
+
+
+@pytest.mark.parametrize('seed', range(20))
+def test_a_path_is_pulled_taut_on_its_side_of_every_island(seed: int):
+    blocked = np.zeros((60, 60), dtype=bool)
+    blocked[29:31, 29:31] = True
+    space = GridSpace.from_blocked(blocked)
+    pillar = islands_at(space.island_points)
+    path = detour(beyond=50.0)
+    limits, rng = module.Limits(math.inf), stream(seed)
+    taut = shorten(space, path, rng, limits, islands=pillar)
+    assert path_collisions(taut, blocked, 1.0) == []
+    assert signature(pillar, space.to_kernel(taut)) == signature(pillar, space.to_kernel(path))
+    assert windings([(30.0, 30.0)], path, taut) == [0]
+    over = math.dist((4, 30), (29, 31)) + 2.0 + math.dist((31, 31), (56, 30))
+    assert over <= length(taut) <= 1.002 * over
+
+
+def test_a_mutant_that_lets_go_of_the_class_is_caught(monkeypatch: pytest.MonkeyPatch):
+    """Pulled past islands, what differed falls together: then three ways are not found."""
+
+    def careless(space, path, rng, limits, islands):
+        return shorten(space, path, rng, limits)
+
+    monkeypatch.setattr(module, 'shorten', careless)
+    start, goal = SPACE.cell_centres(39, 3), SPACE.cell_centres(39, 56)
+    found = [len(plan(SPACE, start, goal, alternatives=3, seed=k).paths) for k in range(5)]
+    assert min(found) < 3
+
+
+# -- refused -------------------------------------------------------------------------------------
+
+
+class SidelessSpace(GridSpace):
+    """A space that does not know its islands."""
+
+    island_points = None
+
+
+@pytest.mark.parametrize(
+    ('space', 'arguments', 'words'),
+    [
+        (SPACE, {'alternatives': 0}, 'alternatives must be at least 1, got 0'),
+        (SPACE, {'alternatives': 1.5}, 'alternatives must be a whole number, got 1.5'),
+        (SPACE, {'alternatives': 2, 'simplify': False}, 'must be 1 when simplify is false, got 2'),
+        (
+            SidelessSpace.from_blocked(BLOCKED),
+            {'alternatives': 2},
+            'alternatives must be 1 in a SidelessSpace, .*, got 2',
+        ),
+    ],
+)
+def test_what_cannot_be_had_is_refused(space: GridSpace, arguments: dict, words: str):
+    with pytest.raises(RequestError, match=words):
+        plan(space, (5.0, 1.0), (4.0, 1.0), **arguments)
+    assert plan(space, *space.cell_centres([1, 1], [1, 5]), seed=0).status is PlannerStatus.SOLVED

@@ -1,0 +1,257 @@
+"""Clearance: kept where there is room, given up in doors, never at the price of a collision."""
+
+from functools import partial
+from itertools import pairwise
+import math
+from test.brute_force import path_collisions
+from test.laws import maps
+import threading
+
+from hnr_planner import core
+from hnr_planner.core import ALGORITHMS, GridSpace, PlannerStatus, RequestError
+from hnr_planner.core.planning.homology import islands_at, signature
+from hnr_planner.core.planning.limits import Budget
+from hnr_planner.core.planning.planners.hit_and_run_connect import HitAndRunConnect
+from hnr_planner.core.planning.postprocessing import clearance as module
+from hnr_planner.core.planning.postprocessing.clearance import increase_clearance, path_cost
+from hypothesis import given, settings, strategies
+import numpy as np
+from numpy.typing import NDArray
+import pytest
+
+Floats = NDArray[np.float64]
+# No law here is about time, however busy the machine is.
+plan = partial(core.plan, time_limit=60.0)
+
+BLOCKED = maps.rooms(60, 80, 20, seed=4)
+ORIGIN = (2.0, -1.0, 0.4)
+SPACE = GridSpace.from_blocked(BLOCKED, 0.1, ORIGIN)
+START, GOAL = SPACE.cell_centres(9, 9), SPACE.cell_centres(50, 70)
+
+
+def points_on(path: Floats, spacing: float) -> Floats:
+    """Return points along a path, its vertices among them."""
+    pieces = [path[:1]]
+    for a, b in pairwise(path):
+        n = 1 + int(math.dist(a, b) / spacing)
+        pieces.append(a + np.arange(1, n + 1)[:, np.newaxis] / n * (b - a))
+    return np.concatenate(pieces)
+
+
+def wall_distances(points: Floats, occupied: NDArray[np.bool_]) -> Floats:
+    """Return the distance from points in cells to the nearest occupied square, by definition."""
+    row, column = np.argwhere(occupied).T
+    x, y = points.T[:, :, np.newaxis]
+    beside = np.maximum(np.maximum(column - x, x - column - 1), 0.0)
+    above = np.maximum(np.maximum(row - y, y - row - 1), 0.0)
+    return np.hypot(beside, above).min(axis=1)
+
+
+def away(path: Floats, distance: float) -> Floats:
+    """Return points along a path that are this far from both of its ends."""
+    points = points_on(path, 0.25)
+    from_start, from_goal = (np.hypot(*(points - end).T) for end in path[[0, -1]])
+    return points[(from_start > distance) & (from_goal > distance)]
+
+
+# -- where there is room -------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize('seed', range(10))
+@pytest.mark.parametrize('clearance', [2.0, 5.0, 9.0])
+def test_a_hall_has_room_for_what_is_asked(clearance: float, seed: int):
+    """Around a wall in a hall of 80 x 100 cells: the distance asked for is kept, within 10 %."""
+    occupied = np.zeros((80, 100), dtype=bool)
+    occupied[:50, 48:52] = True
+    occupied[[0, -1]] = occupied[:, [0, -1]] = True
+    space = GridSpace.from_blocked(occupied)
+    start, goal = (14.5, 14.5), (85.5, 14.5)
+    path = plan(space, start, goal, clearance=clearance, seed=seed).path
+    assert path_collisions(path, occupied, 1.0) == []
+    kept = wall_distances(points_on(path, 0.25), occupied).min()
+    assert 0.9 * clearance <= kept <= 1.1 * clearance
+    around = math.hypot(33.5, 35.5 + clearance) * 2 + 4 + 2 * clearance
+    assert sum(map(math.dist, path[:-1], path[1:])) < around
+
+
+@pytest.mark.parametrize('seed', range(10))
+def test_along_a_wall_the_path_moves_away_from_it(seed: int):
+    occupied = np.zeros((40, 120), dtype=bool)
+    occupied[0] = True
+    space = GridSpace.from_blocked(occupied)
+    result = plan(space, (5.0, 2.0), (115.0, 2.0), clearance=6.0, seed=seed)
+    assert result.iterations == 0
+    assert wall_distances(away(result.path, 15.0), occupied).min() >= 0.9 * 6.0
+    assert result.first_solution.length == 110.0 < result.length < 118.0
+
+
+# -- where there is not --------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize('seed', range(10))
+@pytest.mark.parametrize('width', [1, 3, 6])
+def test_a_narrow_door_is_passed_in_its_middle_and_left_behind(width: int, seed: int):
+    """A wall 4 cells thick with a door at one side; beyond it the clearance is kept again."""
+    occupied = np.zeros((60, 100), dtype=bool)
+    occupied[[0, -1]] = occupied[:, [0, -1]] = True
+    occupied[:, 48:52] = True
+    top = 20 + width
+    occupied[20:top, 48:52] = False
+    space = GridSpace.from_blocked(occupied)
+    path = plan(space, (15.5, 45.5), (85.5, 45.5), clearance=8.0, seed=seed).path
+    assert path_collisions(path, occupied, 1.0) == []
+    points = points_on(path, 0.25)
+    in_door = points[(points[:, 0] > 48.0) & (points[:, 0] < 52.0)]
+    assert np.abs(in_door[:, 1] - (20.0 + width / 2.0)).max() <= 0.3 * width
+    from_door = np.hypot(*(points - (50.0, 20.0 + width / 2.0)).T)
+    assert wall_distances(points[from_door > 14.0], occupied).min() >= 0.9 * 8.0
+
+
+@pytest.mark.parametrize('clearance', [1e-9, 0.01, 3.0, 1e6])
+def test_any_clearance_can_be_asked_for(clearance: float):
+    result = plan(SPACE, START, GOAL, clearance=clearance, seed=1)
+    assert result.status is PlannerStatus.SOLVED and not result.cut_by_time
+    assert path_collisions(result.path, BLOCKED, 0.1, ORIGIN) == []
+
+
+# -- always --------------------------------------------------------------------------------------
+
+
+@settings(max_examples=80, deadline=None)
+@given(
+    strategies.integers(0, 2**31),
+    strategies.floats(0.005, 0.1),
+    strategies.floats(0.05, 3.0),
+    strategies.sampled_from([0.0, 0.12]),
+)
+def test_on_any_map_the_path_is_free_and_costs_no_more_than_the_shortest(
+    seed, density, clearance, radius
+):
+    occupied = maps.speckle(50, 60, density, seed)
+    space = GridSpace.from_blocked(occupied, 0.1, ORIGIN, robot_radius=radius)
+    free = np.argwhere(space.largest_component())
+    start, goal = space.cell_centres(*free[[0, -1]].T)
+    shortest = plan(space, start, goal, seed=seed)
+    result = plan(space, start, goal, seed=seed, clearance=clearance)
+    assert path_collisions(result.path, space.blocked, 0.1, ORIGIN) == []
+    np.testing.assert_array_equal(result.path[[0, -1]], [start, goal])
+    costs = [path_cost(space, answer.path, clearance) for answer in (result, shortest)]
+    assert costs[0] <= costs[1]
+    assert result.first_solution.length == shortest.first_solution.length
+
+
+def test_on_the_whole_more_is_asked_more_is_given():
+    """Mean clearance over 40 requests in rooms, and length: both grow with what is asked."""
+    clearances = (0.0, 0.1, 0.2, 0.4)
+    free = np.argwhere(SPACE.largest_component())
+    rng = np.random.default_rng(0)
+    pairs = [SPACE.cell_centres(*free[rng.integers(len(free), size=2)].T) for _ in range(40)]
+    given, lengths = [], []
+    for clearance in clearances:
+        paths = [plan(SPACE, *ends, clearance=clearance, seed=3).path for ends in pairs]
+        along = np.concatenate([points_on(path, 0.05) for path in paths])
+        given.append(SPACE.clearance(along).mean())
+        lengths.append(sum(sum(map(math.dist, path[:-1], path[1:])) for path in paths))
+    assert given == sorted(given) and given[-1] > 1.1 * given[0]
+    assert lengths == sorted(lengths) and lengths[-1] < 1.2 * lengths[0]
+
+
+def test_a_mutant_that_forgets_the_walls_is_caught(monkeypatch: pytest.MonkeyPatch):
+    """Without stepping aside nothing is given; the laws above would not hold."""
+    monkeypatch.setattr(module, 'move', lambda *arguments: False)
+    with pytest.raises(AssertionError):
+        test_on_the_whole_more_is_asked_more_is_given()
+    with pytest.raises(AssertionError):
+        test_a_hall_has_room_for_what_is_asked(5.0, 0)
+
+
+def test_the_same_seed_gives_the_same_path():
+    first, second = (plan(SPACE, START, GOAL, clearance=0.4, seed=7).path for _ in range(2))
+    np.testing.assert_array_equal(first, second)
+
+
+def test_no_clearance_changes_nothing():
+    np.testing.assert_array_equal(
+        plan(SPACE, START, GOAL, clearance=0.0, seed=7).path, plan(SPACE, START, GOAL, seed=7).path
+    )
+
+
+def test_more_searches_never_give_a_costlier_path():
+    costs = [
+        path_cost(SPACE, plan(SPACE, START, GOAL, clearance=0.4, seed=7, **more).path, 0.4)
+        for more in ({}, {'optimize_iterations': 10}, {'optimize_iterations': 40})
+    ]
+    assert costs == sorted(costs, reverse=True)
+
+
+def test_islands_are_passed_where_they_were():
+    space = GridSpace.from_blocked(maps.wide_hall(60, 60))
+    pillars = islands_at(space.island_points)
+    rng = np.random.default_rng(0)
+    for _ in range(200):
+        path = rng.uniform(0.0, 60.0, (6, 2))
+        if space.contains(path).all() and space.first_blocked_segment(path) is None:
+            moved = increase_clearance(space, path, 5.0, Budget(math.inf), pillars)
+            assert path_collisions(moved, space.blocked, 1.0) == []
+            before, after = (signature(pillars, space.to_kernel(each)) for each in (path, moved))
+            assert before == after
+
+
+def test_alternatives_have_clearance_too():
+    occupied = maps.wide_hall(60, 60)
+    space = GridSpace.from_blocked(occupied)
+    result = plan(space, (8.5, 29.5), (52.5, 29.5), alternatives=3, clearance=4.0, seed=0)
+    assert len(result.paths) == 3
+    for path in result.paths:
+        assert path_collisions(path, occupied, 1.0) == []
+        assert wall_distances(points_on(path, 0.25), occupied).min() >= 0.9 * 4.0
+
+
+def test_the_clock_ends_it_with_a_path():
+    cancel = threading.Event()
+    cancel.set()
+    near = np.array(START) + 0.01
+    result = plan(SPACE, START, near, clearance=0.4, cancel=cancel)
+    assert result.status is PlannerStatus.SOLVED and result.cut_by_time
+    np.testing.assert_array_equal(result.path, [START, near])
+
+
+# -- refused -------------------------------------------------------------------------------------
+
+
+class WalllessSpace(GridSpace):
+    """A space that does not know its clearance."""
+
+    walls = None
+
+
+@pytest.mark.parametrize(
+    ('arguments', 'words'),
+    [
+        ({'clearance': -0.1}, 'clearance must be in 0..1e'),
+        ({'clearance': math.nan}, 'clearance must be in 0..1e'),
+        ({'clearance': math.inf}, 'clearance must be in 0..1e'),
+        ({'clearance': 'far'}, "clearance must be a number, got 'far'"),
+        ({'clearance': 0.5, 'simplify': False}, 'clearance must be 0 when simplify is false'),
+        ({'clearance': 0.5, 'algorithm': 'rrt'}, "rrt has no setting 'clearance'"),
+    ],
+)
+def test_what_cannot_be_had_is_refused(arguments: dict, words: str):
+    with pytest.raises(RequestError, match=words):
+        plan(SPACE, START, GOAL, **arguments)
+
+
+def test_a_space_without_clearance_says_so():
+    space = WalllessSpace.from_blocked(BLOCKED, 0.1)
+    ends = space.cell_centres([9, 9], [9, 12])
+    with pytest.raises(RequestError, match=r'must be 0 in a WalllessSpace, .*, got 0.5'):
+        plan(space, *ends, clearance=0.5)
+    assert plan(space, *ends).status is PlannerStatus.SOLVED
+
+
+@pytest.mark.parametrize('algorithm', [name for name in ALGORITHMS if 'rrt' not in name])
+def test_a_planner_value_has_the_clearance_as_a_field(algorithm: str):
+    if algorithm != 'hit_and_run':
+        by_name = plan(SPACE, START, GOAL, algorithm=algorithm, clearance=0.3, seed=2)
+        by_value = plan(SPACE, START, GOAL, algorithm=HitAndRunConnect(clearance=0.3), seed=2)
+        np.testing.assert_array_equal(by_name.path, by_value.path)

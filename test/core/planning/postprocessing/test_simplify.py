@@ -1,0 +1,139 @@
+"""Simplified paths: free, with the same ends, never longer, for a bounded amount of work."""
+
+import math
+import os
+from pathlib import Path
+import subprocess
+import sys
+from test.brute_force import path_collisions
+from test.laws import maps
+
+from hnr_planner.core import GridSpace, plan, RequestError, simplify
+from hnr_planner.core.lengths import path_length
+from hnr_planner.core.planning.homology import NO_ISLANDS
+from hnr_planner.core.planning.postprocessing.shortcuts import pull, skip
+import numpy as np
+from numpy.typing import NDArray
+import pytest
+
+BLOCKED = maps.rooms(60, 80, 10, seed=4)
+ORIGIN = (2.0, -1.0, 0.4)
+SPACE = GridSpace.from_blocked(BLOCKED, 0.1, ORIGIN)
+START, GOAL = SPACE.cell_centres(2, 2), SPACE.cell_centres(57, 75)
+
+
+def chain(seed: int) -> NDArray[np.float64]:
+    result = plan(SPACE, START, GOAL, algorithm='hit_and_run', seed=seed, simplify=False)
+    assert len(result.path) > 5
+    return result.path
+
+
+@pytest.mark.parametrize('seed', range(20))
+def test_a_simplified_path_is_free_shorter_and_has_the_same_ends(seed: int):
+    path = chain(seed)
+    before = path.copy()
+    shorter = simplify(SPACE, path, seed=seed)
+    np.testing.assert_array_equal(path, before)
+    np.testing.assert_array_equal(shorter[[0, -1]], path[[0, -1]])
+    assert path_length(shorter) < path_length(path)
+    assert path_collisions(shorter, BLOCKED, 0.1, ORIGIN) == []
+
+
+def test_again_and_again_it_never_gets_longer():
+    path = chain(0)
+    for seed in range(30):
+        shorter = simplify(SPACE, path, seed=seed, max_iterations=200)
+        assert path_length(shorter) <= path_length(path)
+        path = shorter
+    assert path_collisions(path, BLOCKED, 0.1, ORIGIN) == []
+
+
+def test_a_path_around_one_corner_is_pulled_taut():
+    """The shortest way touches the corner of the wall; a simplified path comes within 1 %."""
+    blocked = np.zeros((40, 40), dtype=bool)
+    blocked[:30, 20] = True
+    space = GridSpace.from_blocked(blocked)
+    shortest = 2 * math.hypot(15.0, 28.0) + 1.0
+    for seed in range(20):
+        path = plan(space, (5, 2), (36, 2), algorithm='rrt', seed=seed, simplify=False).path
+        assert path_length(simplify(space, path, seed=seed)) <= 1.01 * shortest
+
+
+def test_a_chain_of_sixty_thousand_vertices_becomes_a_hundred():
+    blocked = maps.rooms(400, 400, 20, seed=3)
+    space = GridSpace.from_blocked(blocked)
+    cells = np.argwhere(space.largest_component())
+    ends = space.cell_centres(*cells[[0, -1]].T)
+    path = plan(
+        space, *ends, algorithm='hit_and_run', seed=4, time_limit=60.0, simplify=False
+    ).path
+    assert len(path) > 60_000
+    shorter = simplify(space, path, seed=0)
+    assert len(shorter) < 150
+    assert path_length(shorter) < 1000
+    assert path_collisions(shorter, blocked, 1.0) == []
+
+
+def test_a_straight_path_stays_as_it_is():
+    straight = np.array([START, START + (0.1, 0.05)])
+    np.testing.assert_array_equal(simplify(SPACE, straight, seed=0), straight)
+
+
+def test_the_same_seed_gives_the_same_path():
+    path = chain(1)
+    np.testing.assert_array_equal(simplify(SPACE, path, seed=3), simplify(SPACE, path, seed=3))
+
+
+def test_no_work_and_no_time_leave_the_path_as_it_is():
+    path = chain(2)
+    np.testing.assert_array_equal(simplify(SPACE, path, seed=0, max_iterations=0), path)
+    np.testing.assert_array_equal(simplify(SPACE, path, seed=0, time_limit=0.0), path)
+
+
+@pytest.mark.parametrize('every', [False, True])
+@pytest.mark.parametrize('budget', [0, 1, 10, 100, 1000])
+def test_the_number_of_visibility_tests_is_never_exceeded(budget: int, every: bool):
+    points = SPACE.to_kernel(chain(3))
+    kept = np.zeros(len(points), dtype=np.int64)
+    assert skip(SPACE.data, NO_ISLANDS, points, kept, 1, every, budget)[1] <= budget
+    assert pull(SPACE.data, NO_ISLANDS, points, 1, SPACE.margin, budget)[2] <= budget
+
+
+COMPILING = """
+import numpy as np
+from hnr_planner.core import GridSpace, simplify
+blocked = np.zeros((40, 40), bool)
+blocked[:30, 20] = True
+space = GridSpace.from_blocked(blocked)
+path = [(5, 2), (2, 38), (38, 38), (36, 2)]
+first, second = (simplify(space, path, seed=0, time_limit=0.5) for _ in range(2))
+assert len(first) > 2 and np.array_equal(first, second), (first, second)
+"""
+
+
+def test_compilation_does_not_count_in_the_time_limit(tmp_path: Path):
+    environment = dict(os.environ, NUMBA_CACHE_DIR=str(tmp_path))
+    done = subprocess.run(
+        [sys.executable, '-c', COMPILING],
+        env=environment,
+        capture_output=True,
+        text=True,
+        timeout=120,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+
+
+@pytest.mark.parametrize(
+    ('path', 'words'),
+    [
+        ([START], 'at least two points'),
+        ([START, GOAL], 'segment 0'),
+        ([START, START, GOAL], 'segment 1'),
+        ([[0.0, 0.0, 0.0], [1.0, 1.0, 1.0]], 'shape'),
+        ([START, (np.nan, 0.0)], 'finite'),
+    ],
+)
+def test_a_path_that_is_none_is_refused(path, words: str):
+    with pytest.raises(RequestError, match=words):
+        simplify(SPACE, path, seed=0)

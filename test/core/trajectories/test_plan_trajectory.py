@@ -1,0 +1,269 @@
+"""``plan`` for a system: ends, limits, statuses, bad input, and time."""
+
+import math
+from pathlib import Path
+import subprocess
+import sys
+from test.core.trajectories.worlds import (
+    BLOCKED,
+    CAR,
+    faults,
+    GOAL,
+    in_map,
+    INTEGRATOR,
+    SPACE,
+    space_of,
+    START,
+    state,
+)
+import threading
+from typing import Any
+
+from hnr_planner.core import HnrError, plan, PlannerStatus, PlanResult
+from hnr_planner.core.systems import DoubleIntegrator
+import numpy as np
+import pytest
+
+
+def solve(start: Any = START, goal: Any = GOAL, **given: Any) -> PlanResult:
+    """Plan in the serpentine; no clock is in the way unless asked for."""
+    arguments = {'system': INTEGRATOR, 'seed': 1, 'time_limit': 1e6, **given}
+    return plan(SPACE, start, goal, **arguments)
+
+
+# -- where it ends
+
+
+def test_without_a_radius_it_ends_exactly_at_the_goal_and_at_rest_if_asked() -> None:
+    result = solve(goal_speed=0.0)
+    assert faults(result, INTEGRATOR, BLOCKED) == []
+    assert result.trajectory is not None
+    assert result.trajectory.states[-1].tolist() == [*GOAL, 0.0, 0.0]
+
+
+@pytest.mark.parametrize('speed', [0.0, 0.3, math.inf])
+@pytest.mark.parametrize('radius', [0.0, 0.4])
+def test_the_end_lies_in_the_goal_region_and_is_slow_enough(radius: float, speed: float) -> None:
+    result = solve(goal_radius=radius, goal_speed=speed, optimize_iterations=1)
+    assert faults(result, INTEGRATOR, BLOCKED) == []
+    assert result.trajectory is not None
+    end = result.trajectory.states[-1]
+    assert np.hypot(*(end[:2] - GOAL)) <= radius + 1e-9
+    assert np.hypot(*end[2:]) <= speed + 1e-9
+
+
+def test_more_freedom_at_the_goal_makes_it_shorter() -> None:
+    def duration(**given: Any) -> float:
+        trajectory = solve(optimize_iterations=2, **given).trajectory
+        assert trajectory is not None
+        return trajectory.duration
+
+    resting = duration(goal_speed=0.0)
+    assert duration() < resting - 0.5
+    assert duration(goal_radius=0.5) < duration() - 0.1
+
+
+def test_a_start_in_the_goal_region_stays_there() -> None:
+    result = solve(goal=START[:2])
+    assert result.status is PlannerStatus.SOLVED and result.iterations == 0
+    assert result.trajectory is not None
+    assert result.trajectory.duration == 0.0
+    assert result.trajectory.states.tolist() == [START.tolist()] * 2
+    assert result.path.tolist() == [START[:2].tolist()] * 2
+    assert faults(result, INTEGRATOR, BLOCKED) == []
+
+
+def test_a_start_at_the_goal_that_is_too_fast_comes_back() -> None:
+    result = solve(state(2.0, 0.75, 1.0, 0.0), in_map(2.0, 0.75), goal_speed=0.0)
+    assert result.status is PlannerStatus.SOLVED
+    assert faults(result, INTEGRATOR, BLOCKED) == []
+    assert result.trajectory is not None
+    assert result.trajectory.duration > 1.0
+    assert result.trajectory.states[-1, 2:].tolist() == [0.0, 0.0]
+
+
+# -- time
+
+
+def test_smoothing_makes_it_shorter_again_and_again() -> None:
+    durations = []
+    for given in ({'simplify': False}, {}, {'optimize_iterations': 1}, {'optimize_iterations': 4}):
+        result = solve(goal_radius=0.5, **given)
+        assert faults(result, INTEGRATOR, BLOCKED) == []
+        assert result.trajectory is not None and result.first_solution is not None
+        durations.append(result.trajectory.duration)
+    assert durations == sorted(durations, reverse=True)
+    assert durations[1] < 0.9 * durations[0] and durations[3] < 0.99 * durations[1]
+
+
+def test_a_trajectory_is_known_between_its_times() -> None:
+    trajectory = solve().trajectory
+    assert trajectory is not None
+    times = np.linspace(0.0, trajectory.duration, 1000)
+    states = trajectory.at(times)
+    assert np.array_equal(trajectory.at(trajectory.times), trajectory.states)
+    assert np.array_equal(trajectory.at([-1.0, 1e9]), trajectory.states[[0, -1]])
+    slopes = np.diff(states[:, :2], axis=0) / np.diff(times)[:, None]
+    means = (states[1:, 2:] + states[:-1, 2:]) / 2.0
+    assert np.abs(slopes - means).max() < 1e-2
+    ways = np.hypot(*np.diff(states[:, :2], axis=0).T).sum()
+    assert trajectory.length == pytest.approx(ways, rel=1e-3)
+
+
+def test_limits_on_work_end_it_in_words() -> None:
+    given = {'algorithm': 'kinodynamic_rrt', 'goal_radius': 0.1}
+    assert solve(max_iterations=5, **given).status is PlannerStatus.ITERATION_LIMIT
+    late = solve(time_limit=0.0, **given)
+    assert late.status is PlannerStatus.TIMEOUT and late.cut_by_time
+    assert late.trajectory is None and len(late.path) == 0 and late.length == math.inf
+    event = threading.Event()
+    event.set()
+    assert solve(cancel=event, **given).status is PlannerStatus.CANCELLED
+
+
+# -- what cannot be
+
+
+def test_ends_that_are_no_good_are_named() -> None:
+    wall = in_map(1.0, 1.6)
+    assert solve(np.append(wall, [0.0, 0.0])).status is PlannerStatus.INVALID_START
+    assert solve(goal=wall).status is PlannerStatus.INVALID_GOAL
+    blocked = BLOCKED.copy()
+    blocked[6] = True
+    result = plan(space_of(blocked), START, GOAL, system=INTEGRATOR)
+    assert result.status is PlannerStatus.UNREACHABLE and 'no path exists' in result.message
+
+
+#: Moving in from far outside, and stopping inside, as far as the bounds are concerned.
+FIRST_REQUEST = """
+import sys
+sys.path.insert(0, '.')
+from hnr_planner.core import GridSpace, plan
+from hnr_planner.core.systems import DoubleIntegrator
+import numpy as np
+space = GridSpace.from_blocked(np.zeros((20, 20), bool), 0.5)
+system = DoubleIntegrator(max_speed=1e5)
+for start in ((-5e7, 5.0, (1e8 + 10.0) ** 0.5, 0.0), (2.0, 5.0, 0.0, 0.0)):
+    print(plan(space, start, (8.0, 8.0), system=system, seed=0).status.name)
+"""
+
+
+def test_a_start_outside_the_map_harms_no_request_to_come(tmp_path: Path) -> None:
+    """In a process of its own: the first request compiles, before anybody looks at its ends."""
+    script = tmp_path / 'first_request.py'
+    script.write_text(FIRST_REQUEST)
+    done = subprocess.run(
+        [sys.executable, script], capture_output=True, text=True, cwd=Path(__file__).parents[4]
+    )
+    assert (done.returncode, done.stdout) == (0, 'INVALID_START\nSOLVED\n'), done.stderr
+
+
+CERTAIN = {
+    'head on, past the stopping distance': state(4.6, 0.75, 1.9, 0.0),
+    'between two walls': state(3.0, 1.45, 0.0, 1.9),
+    'at a slant into a corner': state(5.2, 0.5, 1.4, -1.4),
+}
+ESCAPES = {
+    'at rest': START,
+    'slow': state(3.0, 0.75, 0.0, 0.6),
+    'along the arm': state(2.0, 0.75, 1.9, 0.0),
+    'turning away is enough': state(0.75, 0.9, 1.6, 1.0),
+}
+
+
+@pytest.mark.parametrize('begin', CERTAIN.values(), ids=CERTAIN.keys())
+@pytest.mark.parametrize('algorithm', ['auto', 'kinodynamic_rrt', 'kinodynamic_hit_and_run'])
+def test_an_inevitable_collision_is_proved(algorithm: str, begin: Any) -> None:
+    settings = {} if algorithm == 'auto' else {'boundary': 'forbidden'}
+    result = solve(begin, algorithm=algorithm, goal_radius=0.5, **settings)
+    assert result.status is PlannerStatus.INEVITABLE_COLLISION
+    assert 'can neither stop' in result.message and result.iterations == 0
+
+
+@pytest.mark.parametrize('begin', ESCAPES.values(), ids=ESCAPES.keys())
+def test_no_collision_is_called_inevitable_that_is_not(begin: Any) -> None:
+    assert solve(begin).status is PlannerStatus.SOLVED
+
+
+def test_proofs_of_collision_hold_against_random_driving() -> None:
+    """Whatever 300 random motions do, none outlives the proof; the hybrid solves the others."""
+    rng = np.random.default_rng(8)
+    seen = {True: 0, False: 0}
+    for _ in range(40):
+        v = rng.normal(size=2)
+        v *= rng.uniform(0.5, 2.0) / np.hypot(*v)
+        begin = state(*rng.uniform((0.1, 0.1), (5.9, 1.4)), *v)
+        result = solve(begin, time_limit=0.1)
+        proved = result.status is PlannerStatus.INEVITABLE_COLLISION
+        seen[proved] += 1
+        assert proved or result.status in (PlannerStatus.SOLVED, PlannerStatus.TIMEOUT)
+        if proved:
+            assert not any(survives(begin, rng) for _ in range(300))
+    assert min(seen.values()) > 8
+
+
+def survives(begin: Any, rng: np.random.Generator) -> bool:
+    """Drive at random by full acceleration for four seconds, looking every hundredth."""
+    x, v = begin[:2].copy(), begin[2:].copy()
+    angle, h = rng.uniform(0.0, 2.0 * np.pi), 0.01
+    for k in range(400):
+        if k % 50 == 0:
+            angle += rng.normal()
+        v = v + h * np.array([math.cos(angle), math.sin(angle)])
+        x = x + h * v
+        if not SPACE.contains(x):
+            return False
+    return True
+
+
+def test_an_inelastic_boundary_makes_no_collision_inevitable() -> None:
+    begin = CERTAIN['head on, past the stopping distance']
+    result = solve(begin, algorithm='kinodynamic_rrt', goal_radius=0.5, simplify=False)
+    assert result.status is PlannerStatus.SOLVED
+    assert faults(result, INTEGRATOR, BLOCKED, inelastic=True) == []
+
+
+# -- bad input
+
+BAD: dict[str, tuple[dict[str, Any], str]] = {
+    'speed': ({'start': state(1.0, 1.0, 2.0, 1.0)}, 'start must be no faster than max_speed'),
+    'no velocity': ({'start': START[:2]}, 'start must have shape'),
+    'not finite': ({'start': START * np.nan}, 'start must be finite'),
+    'goal': ({'goal': START}, 'goal must have shape'),
+    'goal_speed': ({'goal_speed': -0.1}, 'goal_speed must be in 0'),
+    'goal_speed nan': ({'goal_speed': math.nan}, 'goal_speed must be in 0'),
+    'goal_radius': ({'goal_radius': -1.0}, 'goal_radius must be in 0'),
+    'no region': ({'algorithm': 'kinodynamic_rrt'}, 'goal_radius must be above 0'),
+    'no speed': (
+        {'algorithm': 'kinodynamic_rrt', 'goal_radius': 1.0, 'goal_speed': 0.0},
+        'goal_speed must be above 0 for kinodynamic_rrt',
+    ),
+    'system': ({'system': 'bicycle'}, 'system must be a system'),
+    'class': ({'system': DoubleIntegrator}, 'system must be a system'),
+    'dimension': ({'system': DoubleIntegrator(dim=3)}, 'dimension of the space, 2, got 3'),
+    'algorithm': ({'algorithm': 'rrt'}, 'algorithm must be one of auto, kinodynamic_connect'),
+    'alternatives': ({'alternatives': 2}, 'alternatives must be 1 for a system'),
+    'connect a car': (
+        {'system': CAR, 'algorithm': 'kinodynamic_connect'},
+        'connects states of a DoubleIntegrator only, got a Car',
+    ),
+    'boundary': ({'algorithm': 'kinodynamic_rrt', 'boundary': 'soft'}, 'boundary must be one of'),
+    'transition': ({'algorithm': 'kinodynamic_rrt', 'transition': 1}, 'transition must be one of'),
+    'time_step': ({'algorithm': 'kinodynamic_rrt', 'time_step': 0.0}, 'time_step must be above 0'),
+    'weight': (
+        {'algorithm': 'kinodynamic_rrt', 'velocity_weight': -1.0},
+        'velocity_weight must be in 0',
+    ),
+    'setting': ({'boundary': 'inelastic'}, "has no setting 'boundary'"),
+}
+
+
+@pytest.mark.parametrize(('given', 'message'), BAD.values(), ids=BAD.keys())
+def test_bad_input_is_named(given: dict[str, Any], message: str) -> None:
+    with pytest.raises(HnrError, match=message):
+        solve(**given)
+
+
+def test_a_speed_at_the_goal_goes_with_a_system() -> None:
+    with pytest.raises(HnrError, match='goal_speed goes with a system only'):
+        plan(SPACE, START[:2], GOAL, goal_speed=1.0)

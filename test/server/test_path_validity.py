@@ -1,0 +1,48 @@
+"""Where a path is blocked on a newer map."""
+
+import math
+from test.server.test_requests import GOAL, rooms, store
+import time
+
+from hnr_planner.server.path_validity import first_blocked_pose
+import numpy as np
+import pytest
+
+SLACK = 5.0
+"""Seconds: far less than a loop in Python would take."""
+
+
+def test_free_path_is_blocked_nowhere() -> None:
+    path = np.array([(0.5, 0.5), (1.5, 1.05), (3.5, 1.05)])
+    assert first_blocked_pose(path, 'map', store(rooms()).newest()) is None
+
+
+def test_first_blocked_pose_is_where_the_path_meets_the_obstacle() -> None:
+    path = np.array([(0.5, 0.5), (0.5, 1.5), (3.5, 1.5)])
+    pose = first_blocked_pose(path, 'map', store(rooms()).newest())
+    # The wall begins at x = 1.9 m.
+    assert pose == pytest.approx((1.9, 1.5, 0.0))
+    turned = first_blocked_pose(path[:, ::-1], 'map', store(rooms().T.copy()).newest())
+    assert turned == pytest.approx((1.5, 1.9, math.pi / 2.0))
+
+
+def test_path_that_begins_in_an_obstacle_is_blocked_there() -> None:
+    path = np.array([(2.0, 0.25), (3.5, 0.25)])
+    assert first_blocked_pose(path, 'map', store(rooms()).newest()) == (2.0, 0.25, 0.0)
+    stays = np.array([(2.0, 0.25), (2.0, 0.25)])
+    assert first_blocked_pose(stays, 'map', store(rooms()).newest()) == (2.0, 0.25, 0.0)
+
+
+def test_path_in_another_frame_is_blocked_from_its_first_pose() -> None:
+    path = np.array([(0.5, 0.5), (0.5, 1.5)])
+    assert first_blocked_pose(path, 'odom', store(rooms()).newest()) == (0.5, 0.5, math.pi / 2.0)
+
+
+def test_long_path_is_held_against_a_map_at_once() -> None:
+    newest = store(rooms()).newest()
+    path = np.tile([(0.5, 0.5), (0.5, 1.5)], (1_000_000, 1))
+    began = time.thread_time()  # that of this thread alone: other work does not count
+    assert first_blocked_pose(path, 'map', newest) is None
+    path[-1] = GOAL
+    assert first_blocked_pose(path, 'map', newest) is not None
+    assert time.thread_time() - began < SLACK

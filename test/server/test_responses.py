@@ -1,0 +1,45 @@
+"""What is told about answers: the values of an outcome, and the statistics."""
+
+from dataclasses import replace
+from test.server.test_requests import ask, maze, rooms, SETTINGS, store
+
+from hnr_planner.server.outcomes import Outcome
+from hnr_planner.server.statistics import Statistics
+import numpy as np
+import pytest
+
+
+@pytest.mark.parametrize('outcome', [Outcome.UNREACHABLE, Outcome.ITERATION_LIMIT])
+def test_without_a_path_its_measures_are_not_numbers(outcome: Outcome) -> None:
+    if outcome is Outcome.UNREACHABLE:
+        report = ask(store(rooms(door=False)))
+    else:
+        settings = replace(SETTINGS, max_iterations=100)
+        report = ask(store(maze()), (0.05, 0.05), (20.05, 20.05), settings=settings)
+    assert report.outcome is outcome
+    values = report.values
+    assert [values[name] for name in ('length', 'clearance', 'offset')] == ['nan'] * 3
+    assert values['first_solution_length'] == 'nan'
+
+
+def test_refusals_are_counted_and_leave_the_times_alone() -> None:
+    statistics = Statistics()
+    searched = ask(store(rooms()))
+    statistics.count(searched)
+    for start, goal in (((2.0, 0.2), (3.5, 0.3)), ((0.5, 0.5), (2.0, 0.2))):
+        statistics.count(ask(store(rooms()), start, goal))
+    statistics.count(ask(store(rooms(door=False))))
+    summary = statistics.summary()
+    assert summary.outcomes == {
+        Outcome.SOLVED: 1,
+        Outcome.INVALID_START: 1,
+        Outcome.INVALID_GOAL: 1,
+        Outcome.UNREACHABLE: 1,
+    }
+    assert summary.median == summary.p95 == searched.elapsed
+
+
+def test_times_are_unknown_before_the_first_search() -> None:
+    statistics = Statistics()
+    statistics.count(ask(store(rooms(door=False))))
+    assert np.isnan([statistics.summary().median, statistics.summary().p95]).all()

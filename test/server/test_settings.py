@@ -1,0 +1,75 @@
+"""The table of parameters: defaults, rules, and the documented configuration."""
+
+import dataclasses
+import math
+from pathlib import Path
+from typing import Any
+
+from hnr_planner.server.settings import DEFAULTS, RULES, Settings, SettingsError
+import pytest
+import yaml
+
+CONFIG = Path(__file__).parents[2] / 'config' / 'hnr_planner.yaml'
+
+
+def test_configuration_holds_every_parameter_with_its_default() -> None:
+    configured = yaml.safe_load(CONFIG.read_text())['/**/hnr_planner']['ros__parameters']
+    assert configured == dataclasses.asdict(DEFAULTS)
+    for name, value in configured.items():
+        assert type(value) is type(getattr(DEFAULTS, name)), name
+
+
+def test_configuration_states_units_and_ranges() -> None:
+    text = CONFIG.read_text()
+    for name, rule in RULES.items():
+        comment = text[: text.index(f'\n    {name}:')].rsplit('\n\n', 1)[1]
+        assert comment.lstrip().startswith('#'), name
+        words = ' '.join(comment.replace('#', ' ').split())
+        assert not rule.unit or f'[{rule.unit}]' in words, name
+        assert all(choice in words for choice in rule.choices), name
+        if rule.lower is not None and rule.upper is not None:
+            # -1 has a meaning of its own, beside the range.
+            assert f'{max(rule.lower, 0):.10g} to {rule.upper:.10g}' in words, name
+            assert rule.lower >= 0 or '-1' in words, name
+
+
+@pytest.mark.parametrize(
+    ('name', 'value', 'words'),
+    [
+        ('algorithm', 'a_star', 'hit_and_run'),
+        ('unknown', 'maybe', 'blocked, free'),
+        ('robot_radius', -0.1, '0..1000 m'),
+        ('robot_radius', math.nan, 'nan'),
+        ('occupied_threshold', 0, '1..100'),
+        ('occupied_threshold', 101, '1..100'),
+        ('time_limit', 0.0, '0.001..3600 s'),
+        ('time_limit', math.inf, 'inf'),
+        ('max_iterations', -1, '0..2147483647'),
+        ('goal_radius', -1.0, '0..1000 m'),
+        ('optimize_for', -1.0, '0..3600 s'),
+        ('seed', -2, '-1..2147483647'),
+        ('seed', 2**31, '-1..2147483647'),
+        ('pose_spacing', -0.5, 'vertices only'),
+        ('samples_max', -1, '0..10000000'),
+        ('sample_count', 0, '1..1000000'),
+        ('sample_walk', 'drunk', 'hit_and_run'),
+        ('sample_radius', -0.1, '0..1000 m'),
+        ('sample_thin', 0, '1..100000'),
+    ],
+)
+def test_impossible_value_is_refused_with_value_and_rule(
+    name: str, value: Any, words: str
+) -> None:
+    with pytest.raises(SettingsError) as refusal:
+        dataclasses.replace(DEFAULTS, **{name: value})
+    assert name in str(refusal.value)
+    assert repr(value) in str(refusal.value)
+    assert words in str(refusal.value)
+
+
+def test_no_seed_and_no_limit_reach_the_planner_as_none() -> None:
+    assert Settings().plan_arguments['seed'] is None
+    assert Settings().sample_arguments['seed'] is None
+    assert Settings().plan_arguments['max_iterations'] is None
+    chosen = Settings(seed=0, max_iterations=5).plan_arguments
+    assert (chosen['seed'], chosen['max_iterations']) == (0, 5)
