@@ -98,20 +98,20 @@ def gap(space: CompiledSpace, x: Floats, u: Floats, back: Floats) -> tuple[float
 
 @dispatched
 @kernel
-def component(space: Any, x: Any) -> int:
+def component(space: CompiledSpace, x: Floats) -> int:
     """
-    Return the number of the connected part of ``space`` that holds ``x``; 0 where it is not free.
+    Return the number of the component that holds ``x``, from 1; 0 where ``x`` is not free.
 
-    No path leads from one part to another. A space that does not know its parts gives all free
-    points the same number.
+    No path leads from one number to another. A space that does not know its components gives all
+    free points the same number.
     """
     return 1 if contains(space, x) else 0
 
 
 @dispatched
 @kernel
-def segment_is_free(space: Any, a: Any, b: Any) -> bool:
-    """Say whether the closed segment from ``a`` to ``b`` is free: the chord goes beyond ``b``."""
+def segment_is_free(space: CompiledSpace, a: Floats, b: Floats) -> bool:
+    """Return whether the closed segment a-b is free: whether the chord ends beyond ``b``."""
     if not (contains(space, a) and contains(space, b)):
         return False
     u = b - a
@@ -146,23 +146,11 @@ def contains_around(space, x, slack):
 
 
 @kernel
-def part_of(space, x):
-    """Return the number of the connected part that holds ``x``: ``component`` for Python."""
-    return component(space, x)
-
-
-@kernel
 def chord_or_empty(space, x, u):
     """Return the chord through ``x`` along ``u``; (0, 0) where ``x`` is not free."""
     if not contains(space, x):
         return 0.0, 0.0
     return chord(space, x, u, -u)
-
-
-@kernel
-def sees_from(space, a, b):
-    """Say whether the closed segment from ``a`` to ``b`` is free, for Python."""
-    return segment_is_free(space, a, b)
 
 
 @kernel

@@ -22,7 +22,7 @@ from hnr_planner.core.spaces.primitives import (
     chord_or_empty,
     CompiledSpace,
     first_blocked_segment,
-    sees_from,
+    segment_is_free,
 )
 from hnr_planner.core.spaces.transformed import shifted
 import numpy as np
@@ -271,7 +271,7 @@ class Space(ABC):
         """Return whether every point of the closed segment from ``start`` to ``end`` is free."""
         a = self.to_kernel(check_point('start', start, self.dim))
         b = self.to_kernel(check_point('end', end, self.dim))
-        return bool(sees_from(self.data, a, b))
+        return bool(segment_is_free(self.data, a, b))
 
     def first_blocked_segment(self, path: ArrayLike) -> int | None:
         """Return the index of the first segment of a path (m, dim) that is not free, or None."""

@@ -17,7 +17,7 @@ from hnr_planner.core.spaces.grid.fields import components, free_distance, infla
 from hnr_planner.core.spaces.grid.frame import decimal, GridFrame
 from hnr_planner.core.spaces.grid.lattice import build_lattice, Lattice, rough_path
 from hnr_planner.core.spaces.grid.traversal import GridData
-from hnr_planner.core.spaces.primitives import part_of
+from hnr_planner.core.spaces.primitives import component
 from hnr_planner.core.spaces.space import Space
 from hnr_planner.core.spaces.transformed import TransformedData
 import numpy as np
@@ -283,8 +283,8 @@ class GridSpace(Space):
         Free cells that share an edge are connected; those that share only a corner are not, since
         the corner touches the two obstacles beside it.
         """
-        component = self._component(check_point('a', a, 2))
-        return component != 0 and component == self._component(check_point('b', b, 2))
+        label = self._component(check_point('a', a, 2))
+        return label != 0 and label == self._component(check_point('b', b, 2))
 
     def region_reachable(self, start: ArrayLike, goal: ArrayLike, radius: float) -> bool:
         """Return whether a path leads from ``start`` to within ``radius`` [m] of ``goal``."""
@@ -303,11 +303,11 @@ class GridSpace(Space):
 
         Free space is open, so a nearest point on the rim of a cell is taken ``margin`` inside.
         """
-        component = self._component(check_point('start', start, 2))
+        label = self._component(check_point('start', start, 2))
         target = self.frame.to_kernel(check_point('goal', goal, 2))
-        if component == 0:
+        if label == 0:
             return None
-        nearest, offset = nearest_in_component(self.data.labels, component, target, self.margin)
+        nearest, offset = nearest_in_component(self.data.labels, label, target, self.margin)
         return self.frame.from_kernel(nearest) if offset <= radius / self.scale else None
 
     def rough_path(self, start: Floats, goal: Floats) -> Floats | None:
@@ -327,7 +327,7 @@ class GridSpace(Space):
 
     def _component(self, point: Floats) -> int:
         """Return the component that holds a point (2,) [m], from 1; 0 where it is not free."""
-        return int(part_of(self.data, self.frame.to_kernel(point)))
+        return int(component(self.data, self.frame.to_kernel(point)))
 
     # -- distance to walls -----------------------------------------------------------------------
 

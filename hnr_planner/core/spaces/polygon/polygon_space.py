@@ -15,7 +15,7 @@ from hnr_planner.core.spaces.curves.surfaces import (
 )
 from hnr_planner.core.spaces.polygon.cells import edges_in_cells
 from hnr_planner.core.spaces.polygon.edges import distance_to_edges, PolygonData
-from hnr_planner.core.spaces.primitives import part_of
+from hnr_planner.core.spaces.primitives import component
 from hnr_planner.core.spaces.space import Space
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -119,17 +119,17 @@ class PolygonSpace(Space):
 
     def connected(self, a: ArrayLike, b: ArrayLike) -> bool:
         """Return whether a path joins two free points: whether they lie in the same polygon."""
-        component = self._component(a)
-        return component != 0 and component == self._component(b)
+        label = self._component(a)
+        return label != 0 and label == self._component(b)
 
     def region_reachable(self, start: ArrayLike, goal: ArrayLike, radius: float) -> bool:
         """Return whether the start's polygon comes nearer than ``radius`` to ``goal``."""
         from shapely import Point
 
-        component = self._component(start)
-        if component == 0:
+        label = self._component(start)
+        if label == 0:
             return False
-        distance = self._polygons[component - 1].distance(Point(check_point('goal', goal, 2)))
+        distance = self._polygons[label - 1].distance(Point(check_point('goal', goal, 2)))
         return bool(distance < check_number('radius', radius, 0.0))
 
     def clearance(self, points: ArrayLike) -> Floats:
@@ -139,7 +139,7 @@ class PolygonSpace(Space):
 
     def _component(self, point: ArrayLike) -> int:
         """Return the number of the polygon that holds a point (2,), from 1; 0 for none."""
-        return int(part_of(self.data, self.to_kernel(check_point('point', point, 2))))
+        return int(component(self.data, self.to_kernel(check_point('point', point, 2))))
 
     def _holes(self) -> list[tuple[int, 'LinearRing']]:
         """Return the rings that are holes, each with the number of its polygon."""
