@@ -85,8 +85,8 @@ def run_chain(space: Space, step: Any, chain: Chain, thin: int, draws: Floats) -
         raise StuckError(
             f'a chain has not moved in {STUCK_AFTER} steps from '
             f'{space.from_kernel(chain.x).tolist()}: of {steps} steps {moves} moved it, '
-            f'{zero_chords} had no chord longer than {space.margin * space.scale:g}; a ball walk '
-            f'needs a smaller radius, others a start that is farther from the boundary'
+            f'{zero_chords} had no chord longer than {space.zero_length * space.scale:g}; a ball '
+            f'walk needs a smaller radius, others a start that is farther from the boundary'
         )
 
 

@@ -54,7 +54,7 @@ class HitAndRunWalk:
 
     def compiled(self, space: Space) -> Any:
         """Return what the step needs."""
-        return HitAndRunStep(space.margin)
+        return HitAndRunStep(space.zero_length)
 
 
 @dataclass(frozen=True)
@@ -65,7 +65,7 @@ class CoordinateHitAndRunWalk:
 
     def compiled(self, space: Space) -> Any:
         """Return what the step needs."""
-        return CoordinateHitAndRunStep(space.margin)
+        return CoordinateHitAndRunStep(space.zero_length)
 
 
 @dataclass(frozen=True)

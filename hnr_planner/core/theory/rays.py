@@ -36,13 +36,13 @@ def reach(space: Space, points: Floats, directions: Floats) -> Floats:
     (k,) float64
 
     """
-    return _reach(space.part, *_in_rows(points, directions))
+    return _reach(space.compiled, *_in_rows(points, directions))
 
 
 def chords(space: Space, points: Floats, directions: Floats) -> tuple[Floats, Floats]:
     """Distances (k,) backwards and forwards to the ends of the chords, as for ``reach``."""
     points, directions = _in_rows(points, directions)
-    return _reach(space.part, points, -directions), _reach(space.part, points, directions)
+    return _reach(space.compiled, points, -directions), _reach(space.compiled, points, directions)
 
 
 def pieces(
@@ -69,7 +69,7 @@ def pieces(
 
     """
     points, directions = _in_rows(points, directions)
-    return _pieces(space.part, points, directions, lower, upper)
+    return _pieces(space.compiled, points, directions, lower, upper)
 
 
 def lengths_within(

@@ -1,30 +1,35 @@
-"""An occupancy grid as a space: what is free, what is connected, how far the walls are."""
+"""An occupancy grid as a space: free points, components, and the distance to walls."""
 
 from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Literal
 
 from hnr_planner.core.checks import check_point, check_points, check_real, Floats
 from hnr_planner.core.errors import RequestError, SpaceError
+from hnr_planner.core.spaces.bounds import in_words
 from hnr_planner.core.spaces.clearance import path_clearance, point_clearance
+from hnr_planner.core.spaces.curves.curve import first_exit_on_curve
 from hnr_planner.core.spaces.grid.cells import Bools, read_blocked, read_occupancy
-from hnr_planner.core.spaces.grid.components import island_points, nearest_in_part
-from hnr_planner.core.spaces.grid.fields import components, free_distance, inflate
-from hnr_planner.core.spaces.grid.frame import GridFrame
+from hnr_planner.core.spaces.grid.components import island_points, nearest_in_component
+from hnr_planner.core.spaces.grid.curves import first_exit_from_grid
+from hnr_planner.core.spaces.grid.fields import components, free_distance, inflate, is_inflated
+from hnr_planner.core.spaces.grid.frame import decimal, GridFrame
 from hnr_planner.core.spaces.grid.lattice import build_lattice, Lattice, rough_path
 from hnr_planner.core.spaces.grid.traversal import GridData
-from hnr_planner.core.spaces.primitives import part_of
+from hnr_planner.core.spaces.primitives import component
 from hnr_planner.core.spaces.space import Space
-from hnr_planner.core.spaces.transformed import PlacedData
+from hnr_planner.core.spaces.transformed import TransformedData
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 #: Value of cells of a Nav2 costmap that an obstacle's inflation blocks; obstacles have 100. A
 #: caller who takes cells from this value on as occupied has such a costmap.
 COSTMAP_INFLATED = 99
-#: Cells looked at, about, for a mean over all of a map.
+#: Approximate number of cells in the sample for a mean over a map.
 TYPICAL_CELLS = 10_000
+
+first_exit_on_curve.register(GridData)(first_exit_from_grid)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -33,13 +38,13 @@ class GridSpace(Space):
     The free points of an occupancy grid: ``GridSpace.from_occupancy`` or ``.from_blocked``.
 
     Row 0 of every array is the row nearest the origin, points are (x, y) in metres in the map
-    frame, and the grid's frame lies in it at ``origin`` (x, y, yaw). Blocked cells are closed and
+    frame, and ``origin`` is the pose (x, y, yaw) of the grid in it. Blocked cells are closed and
     everything outside the grid is blocked.
 
     Attributes
     ----------
     frame : GridFrame
-        Where the grid lies: resolution and origin.
+        Resolution, origin and shape.
     robot_radius : float
         Radius [m] by which the occupied cells were inflated.
     data : GridData
@@ -49,7 +54,7 @@ class GridSpace(Space):
 
     frame: GridFrame
     robot_radius: float
-    data: GridData
+    data: GridData = field()  # no default: the base class has a property of this name
     _wall_distance: NDArray[np.uint8]
     #: Cells that the inflation of a costmap blocks; None for a map that is no costmap.
     _costmap_inflation: Bools | None = None
@@ -75,7 +80,8 @@ class GridSpace(Space):
         data : (rows, cols) integers
             Occupancy: 0..100, -1 for unknown; values outside -1..100 count as unknown.
         resolution : float
-            Side of a cell [m].
+            Side of a cell [m]. A number of single precision, as a message carries it, is taken as
+            the decimal that it stands for.
         origin : (x, y, yaw)
             Pose of the outer corner of cell [0, 0] in the map frame [m, m, rad].
         robot_radius : float
@@ -85,7 +91,7 @@ class GridSpace(Space):
             Cells of at least this value, 1..100, are occupied. For a costmap of Nav2 it is 99:
             then cells of 99 are known to be inflation, and those of 100 to be obstacles.
         unknown : 'blocked' or 'free'
-            What unknown cells are.
+            Whether unknown cells block or are free.
 
         Raises
         ------
@@ -108,7 +114,26 @@ class GridSpace(Space):
         *,
         robot_radius: float = 0.0,
     ) -> 'GridSpace':
-        """Build the space whose occupied cells are ``blocked`` (rows, cols) bool; see above."""
+        """
+        Build the space whose occupied cells are ``blocked``.
+
+        Parameters
+        ----------
+        blocked : (rows, cols) bool
+            The occupied cells.
+        resolution : float
+            Side of a cell [m].
+        origin : (x, y, yaw)
+            Pose of the outer corner of cell [0, 0] in the map frame [m, m, rad].
+        robot_radius : float
+            Radius [m] by which the occupied cells are inflated, as in ``from_occupancy``.
+
+        Raises
+        ------
+        SpaceError
+            When one of the arguments describes no grid; the message names it.
+
+        """
         occupied = read_blocked(blocked)
         return cls._build(occupied, np.zeros_like(occupied), resolution, origin, robot_radius)
 
@@ -121,8 +146,9 @@ class GridSpace(Space):
         origin: Iterable[float],
         radius: float,
     ) -> 'GridSpace':
+        """Check what all constructors take, inflate the occupied cells and label components."""
         frame = GridFrame.checked(resolution, origin, occupied.shape)
-        radius = check_real('robot_radius', radius, SpaceError)
+        radius = decimal(check_real('robot_radius', radius, SpaceError))
         if not 0.0 <= radius < np.inf:
             raise SpaceError(f'robot_radius must be at least 0 and finite, got {radius!r}')
         distance = free_distance(inflate(occupied, radius / frame.resolution) | closed)
@@ -133,7 +159,14 @@ class GridSpace(Space):
             _wall_distance=free_distance(occupied, closed_rim=False),
         )
 
-    # -- where it lies ---------------------------------------------------------------------------
+    def __repr__(self) -> str:
+        """Name the size, the frame and the robot's radius."""
+        return (
+            f'GridSpace(shape={self.shape}, resolution={self.resolution:g}, '
+            f'origin={in_words(np.array(self.origin))}, robot_radius={self.robot_radius:g})'
+        )
+
+    # -- frame -----------------------------------------------------------------------------------
 
     @property
     def shape(self) -> tuple[int, int]:
@@ -150,10 +183,17 @@ class GridSpace(Space):
         """Pose (x, y, yaw) of the grid in the map frame [m, m, rad]."""
         return self.frame.origin
 
+    def compiled_at(self, origin: Floats | None) -> TransformedData:
+        """Return the compiled grid in the map frame moved to ``origin`` (2,); None for 0."""
+        matrix, offset = self.frame.to_cells
+        if origin is not None:
+            offset = self.frame.to_kernel(origin)
+        return TransformedData(self.data, matrix, offset)
+
     @cached_property
-    def part(self) -> PlacedData:
+    def compiled(self) -> TransformedData:
         """The compiled grid in the map frame."""
-        return PlacedData(self.data, *self.frame.to_cells)
+        return self.compiled_at(None)
 
     @property
     def scale(self) -> float:
@@ -173,7 +213,7 @@ class GridSpace(Space):
 
     @cached_property
     def margin(self) -> float:
-        """Distance from a chord's end at which one stops, never below what coordinates resolve."""
+        """Distance from a chord's end at which one stops, never less than coordinates resolve."""
         return max(super().margin, 8.0 * self.frame.rounding)
 
     @cached_property
@@ -185,19 +225,19 @@ class GridSpace(Space):
         return float(free.mean()) if free.size else 1.0
 
     def to_kernel(self, points: Floats) -> Floats:
-        """Bring points (..., 2) [m] of the map frame into cells of the kernel frame."""
+        """Convert points (..., 2) [m] of the map frame to the kernel frame [cells]."""
         return self.frame.to_kernel(points)
 
     def from_kernel(self, points: Floats) -> Floats:
-        """Bring points (..., 2) in cells of the kernel frame into the map frame [m]."""
+        """Convert points (..., 2) of the kernel frame [cells] to the map frame [m]."""
         return self.frame.from_kernel(points)
 
     def turn_to_kernel(self, directions: Floats) -> Floats:
-        """Turn directions (..., 2) of the map frame into the grid's."""
+        """Rotate directions (..., 2) of the map frame into the kernel frame, unscaled."""
         return self.frame.turn_to_kernel(directions)
 
     def cell_centres(self, rows: ArrayLike, columns: ArrayLike) -> Floats:
-        """Centres (k, 2) [m] of the cells at ``rows`` and ``columns`` (k,), in the map frame."""
+        """Return the centres (k, 2) [m] of cells at ``rows`` and ``columns`` (k,), map frame."""
         cells = np.stack([np.asarray(columns), np.asarray(rows)], axis=-1)
         return self.frame.from_kernel(cells + (self.frame.RIM + 0.5))
 
@@ -209,7 +249,7 @@ class GridSpace(Space):
         """Return points (..., 2) [m] of the map frame at (column, row) from the grid's corner."""
         return self.frame.from_kernel(cells + self.frame.RIM)
 
-    # -- what is free ----------------------------------------------------------------------------
+    # -- free points -----------------------------------------------------------------------------
 
     @property
     def blocked(self) -> Bools:
@@ -244,13 +284,13 @@ class GridSpace(Space):
         return inflated
 
     def reaches_to(self, point: ArrayLike) -> bool:
-        """Say whether ``point`` (2,) [m] lies on the map, its edge included."""
+        """Return whether ``point`` (2,) [m] lies on the map, its edge included."""
         x, y = self.frame.to_kernel(check_point('point', point, 2)) - self.frame.RIM
         rows, columns = self.shape
         return bool(0.0 <= x <= columns and 0.0 <= y <= rows)
 
     def why_not_free(self, point: ArrayLike) -> str:
-        """Say in words why ``point`` (2,) [m] is not free."""
+        """Return in words why ``point`` (2,) [m] is not free."""
         x, y = self.frame.to_kernel(check_point('point', point, 2)) - self.frame.RIM
         rows, columns = self.shape
         if not (0 < x < columns and 0 < y < rows):
@@ -260,7 +300,10 @@ class GridSpace(Space):
                 f'{where} the map, which spans '
                 f'x {lower[0]:g}..{upper[0]:g}, y {lower[1]:g}..{upper[1]:g} m'
             )
-        row, column = int(y), int(x)
+        return self._why_not_free_in_cell(int(y), int(x))
+
+    def _why_not_free_in_cell(self, row: int, column: int) -> str:
+        """Return in words why a point in cell [row, column] is not free."""
         cell = f'cell [{row}, {column}]'
         if self.is_obstacle(row, column):
             return f'inside an obstacle: {cell} is occupied'
@@ -272,17 +315,17 @@ class GridSpace(Space):
             return f'within the robot radius of {self.robot_radius:g} m of an obstacle, in {cell}'
         return f'in unknown space: {cell} is unknown'
 
-    # -- what is connected -----------------------------------------------------------------------
+    # -- components ------------------------------------------------------------------------------
 
     def connected(self, a: ArrayLike, b: ArrayLike) -> bool:
         """
-        Say whether a path joins two free points, exactly.
+        Return whether a path joins two free points, exactly.
 
         Free cells that share an edge are connected; those that share only a corner are not, since
         the corner touches the two obstacles beside it.
         """
-        part = self._part(check_point('a', a, 2))
-        return part != 0 and part == self._part(check_point('b', b, 2))
+        label = self._component(check_point('a', a, 2))
+        return label != 0 and label == self._component(check_point('b', b, 2))
 
     @property
     def components(self) -> NDArray[np.int32]:
@@ -291,14 +334,14 @@ class GridSpace(Space):
 
     def component_of(self, point: ArrayLike) -> int:
         """Return the component that holds ``point`` (2,) [m]; 0 where it is not free."""
-        return self._part(check_point('point', point, 2))
+        return self._component(check_point('point', point, 2))
 
     def region_reachable(self, start: ArrayLike, goal: ArrayLike, radius: float) -> bool:
-        """Say whether a path leads from ``start`` to within ``radius`` [m] of ``goal``."""
+        """Return whether a path leads from ``start`` to within ``radius`` [m] of ``goal``."""
         return self.nearest_reachable(start, goal, radius) is not None
 
     def largest_component(self) -> Bools:
-        """Return the cells (rows, cols) of the largest connected part of free space."""
+        """Return the cells (rows, cols) bool of the largest component of free space."""
         labels = self.data.labels[1:-1, 1:-1]
         sizes = np.bincount(labels.ravel())
         sizes[0] = 0
@@ -310,11 +353,11 @@ class GridSpace(Space):
 
         Free space is open, so a nearest point on the rim of a cell is taken ``margin`` inside.
         """
-        part = self._part(check_point('start', start, 2))
+        label = self._component(check_point('start', start, 2))
         target = self.frame.to_kernel(check_point('goal', goal, 2))
-        if part == 0:
+        if label == 0:
             return None
-        nearest, offset = nearest_in_part(self.data.labels, part, target, self.margin)
+        nearest, offset = nearest_in_component(self.data.labels, label, target, self.margin)
         return self.frame.from_kernel(nearest) if offset <= radius / self.scale else None
 
     def rough_path(self, start: Floats, goal: Floats) -> Floats | None:
@@ -324,19 +367,19 @@ class GridSpace(Space):
 
     @cached_property
     def _lattice(self) -> Lattice:
-        """Built for the first that optimizes: it takes as long as half of the rest of the map."""
+        """Built when first used: it takes half as long as the rest of the map."""
         return build_lattice(self.data)
 
     @cached_property
     def island_points(self) -> Floats:
-        """A point (k, 2) in each blocked part with free cells all around it, kernel frame."""
+        """A point (k, 2) in each blocked component that a path can go round, kernel frame."""
         return island_points(self.data.free_distance == 0)
 
-    def _part(self, point: Floats) -> int:
-        """Part of free space that holds a point (2,) [m]: 0 where it is not free."""
-        return int(part_of(self.data, self.frame.to_kernel(point)))
+    def _component(self, point: Floats) -> int:
+        """Return the component that holds a point (2,) [m], from 1; 0 where it is not free."""
+        return int(component(self.data, self.frame.to_kernel(point)))
 
-    # -- how far the walls are -------------------------------------------------------------------
+    # -- distance to walls -----------------------------------------------------------------------
 
     @property
     def walls(self) -> NDArray[np.uint8]:
@@ -344,7 +387,7 @@ class GridSpace(Space):
         return self._wall_distance
 
     def clearance(self, points: ArrayLike) -> Floats:
-        """Distance (k,) [m] from points (k, 2) to the nearest occupied square; inf without one."""
+        """Return the distances (k,) [m] from points (k, 2) to occupied squares; inf for none."""
         cells = self.frame.to_kernel(np.atleast_2d(check_points('points', points, 2)))
         return point_clearance(self._wall_distance, cells) * self.scale
 
