@@ -21,7 +21,7 @@ from hnr_planner.core.kernels.streams import Stream
 from hnr_planner.core.lengths import distance
 from hnr_planner.core.planning.planner import with_room
 from hnr_planner.core.spaces.primitives import contains_around
-from hnr_planner.core.systems.limits import check_limit
+from hnr_planner.core.systems.system import check_limit
 from hnr_planner.core.systems.primitives import brake, contact, halt, move, steer, velocity
 from hnr_planner.core.trajectories.problem import (
     BOUNDARIES,
