@@ -71,7 +71,7 @@ class Car(System):
         return CarData(self.max_acceleration, self.max_speed, self.max_curvature)
 
     def velocity(self, state: Floats) -> Floats:
-        """Return the velocity (2,) [m/s] of a state (4,)."""
+        """Return the velocity [m/s] of a state (4,) as a vector (2,)."""
         heading, speed = state[HEADING], state[SPEED]
         return speed * np.array([math.cos(heading), math.sin(heading)])
 

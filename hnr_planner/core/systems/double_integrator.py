@@ -1,8 +1,8 @@
 """
 The double integrator: a point that accelerates (paper, Section 5, kinematic planning).
 
-Under a constant acceleration it moves along a parabola. Acceleration and speed are bounded, each by
-a ball: where the velocities at both ends of a step are within the limit, all between them are.
+Under a constant acceleration it moves along a parabola. Acceleration and speed are bounded, each
+by a ball: where the velocities at both ends of a step are within the limit, all between them are.
 """
 
 from dataclasses import dataclass
@@ -84,7 +84,7 @@ class DoubleIntegrator(System):
         return DoubleIntegratorData(self.max_acceleration, self.max_speed)
 
     def velocity(self, state: Floats) -> Floats:
-        """Return the velocity (dim,) [m/s] of a state (2 dim,)."""
+        """Return the velocity [m/s] of a state (2 dim,) as a vector (dim,)."""
         _, velocity = np.split(state, 2)
         return velocity
 

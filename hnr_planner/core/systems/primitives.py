@@ -60,7 +60,7 @@ def halt(system: Any, state: Any) -> None:
 @dispatched
 @kernel
 def velocity(system: Any, state: Any, out: Any) -> None:
-    """Write the velocity (dim,) of a state."""
+    """Write the velocity of a state to a vector (dim,)."""
     raise NotImplementedError
 
 

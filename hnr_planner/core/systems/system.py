@@ -68,7 +68,7 @@ class System(Protocol):
         return end
 
     def velocity(self, state: Floats) -> Floats:
-        """Return the velocity (dim,) [m/s] of a state (state_dim,)."""
+        """Return the velocity [m/s] of a state (state_dim,) as a vector (dim,)."""
 
     def speed(self, state: Floats) -> float:
         """Return the speed [m/s] of a state (state_dim,)."""

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+import itertools
 
 from hnr_planner.core.checks import Floats
 from hnr_planner.core.errors import RequestError
@@ -89,17 +90,18 @@ def join_trajectories(trajectories: Sequence[Trajectory]) -> Trajectory:
     """
     if not trajectories:
         raise RequestError('trajectories must be at least one, got none')
-    for k, (one, other) in enumerate(zip(trajectories[:-1], trajectories[1:], strict=True), 1):
+    for k, (one, other) in enumerate(itertools.pairwise(trajectories), 1):
         if not np.array_equal(one.states[-1], other.states[0]):
             raise RequestError(
                 f'trajectory {k} must begin in the state that the one before ends in, '
                 f'{one.states[-1].tolist()}, got {other.states[0].tolist()}'
             )
     moving = [each for each in trajectories if each.duration > 0.0] or [trajectories[0]]
-    begins = np.cumsum([0.0, *(each.duration for each in moving[:-1])])
+    begins = itertools.accumulate((each.duration for each in moving), initial=0.0)
+    times = [begin + each.times[1:] for begin, each in zip(begins, moving, strict=False)]
     return Trajectory(
         moving[0].system,
-        np.concatenate([[0.0], *(t + each.times[1:] for t, each in zip(begins, moving))]),
+        np.concatenate([[0.0], *times]),
         np.concatenate([moving[0].states[:1], *(each.states[1:] for each in moving)]),
         np.concatenate([each.controls for each in moving]),
     )
