@@ -18,6 +18,7 @@ from hnr_planner.core.planning.alternatives.alternatives import (
     with_alternatives,
 )
 from hnr_planner.core.planning.attempts import Attempt, attempt, optimize, with_clearance
+from hnr_planner.core.planning.ends import check_allowance, move_ends
 from hnr_planner.core.planning.limits import Budget
 from hnr_planner.core.planning.planner import compile_search, Planner, Work
 from hnr_planner.core.planning.postprocessing.clearance import compile_clearance
@@ -54,6 +55,8 @@ def plan(
     optimize_for: float = 0.0,
     optimize_iterations: int = 0,
     alternatives: int = 1,
+    goal_tolerance: float = 0.0,
+    start_escape: float = 0.0,
     cancel: Event | None = None,
     **settings: Any,
 ) -> PlanResult:
@@ -71,7 +74,7 @@ def plan(
     goal_radius : float
         Above 0 the path ends within this distance [m] of the goal (the paper's goal region): at
         the first sample there, or where a tree that grew from the goal began. At 0 it ends exactly
-        at the goal, as soon as a sample sees it.
+        at the goal, as soon as the segment to it is free.
     time_limit : float
         Seconds for the whole call, inf for no limit. Compilation does not count.
     max_iterations : int, optional
@@ -85,8 +88,8 @@ def plan(
         passed in their middle. 0 for the shortest path. It needs ``simplify`` and a space that
         measures the distance to its walls.
     optimize_for : float
-        For so many seconds of the call, within the time limit, a shorter path is looked for again
-        and again; a straight one ends it.
+        Seconds of the call, within the time limit, in which further searches look for a shorter
+        path; a straight one ends that.
     optimize_iterations : int
         How many more searches to run for a shorter path; together with ``optimize_for`` whichever
         ends first.
@@ -94,6 +97,15 @@ def plan(
         How many paths to look for, none of which can be deformed into another past an obstacle:
         ``PlanResult.paths``, the shortest first. There may be fewer. All have the same ends, also
         in a goal region.
+    goal_tolerance : float
+        Where the goal is blocked or cannot be reached, the path ends at the nearest point within
+        this distance [m] that can: ``PlanResult.goal_offset`` and the message state it. A goal
+        that is free and reachable is never moved. It needs a space with ``nearest_reachable``.
+    start_escape : float
+        Where the start is not free because of inflation, or in an unknown cell, the path begins
+        with a straight way out of it of at most this length [m]: ``PlanResult.escape`` and the
+        message state it. It crosses no occupied cell; from inside an obstacle there is none. It
+        needs a ``GridSpace``.
     cancel : threading.Event, optional
         Ends the call once it is set.
     **settings
@@ -130,18 +142,20 @@ def plan(
         settings=settings,
     )
     n_paths = check_alternatives(space, alternatives, request.simplify)
+    allowance = check_allowance(space, goal_tolerance, start_escape)
     _compile(request, n_paths)
 
     began = working_time()
     budget = effort.budget(began)
-    known = outcome_without_search(request)
-    if known is not None:
-        result = _result_without_search(request, *known, budget, began)
+    moved = move_ends(request, allowance)
+    request = moved.request
+    if moved.outcome is not None:
+        result = _result_without_search(request, *moved.outcome, budget, began)
     else:
         result = _result_of_search(request, effort, budget, began)
     if n_paths > 1 and result.status is PlannerStatus.SOLVED:
         result = with_alternatives(request, result, n_paths, budget, began)
-    return result
+    return moved.lead_out(result)
 
 
 def _refuse_trajectories(settings: dict[str, Any]) -> None:

@@ -129,6 +129,18 @@ class Request:
         """Return the random stream for one purpose: each has its own, all follow from the seed."""
         return stream(self.seed, *purpose)
 
+    def moved(
+        self,
+        start: Floats | None = None,
+        goal: Floats | None = None,
+        goal_radius: float | None = None,
+    ) -> 'Request':
+        """Return the same request with other ends, caller's frame and units."""
+        start, goal = (b if a is None else a for a, b in ((start, self.start), (goal, self.goal)))
+        goal_radius = self.goal_radius if goal_radius is None else goal_radius
+        problem = make_problem(self.space, start, goal, goal_radius)
+        return replace(self, start=start, goal=goal, goal_radius=goal_radius, problem=problem)
+
 
 def check_request(
     space: Space,
