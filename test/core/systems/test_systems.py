@@ -5,7 +5,13 @@ from test.curve_brute_force import Bend, curve_collisions, Throw
 from typing import Any
 
 from hnr_planner.core import GridSpace, HnrError
-from hnr_planner.core.systems import Car, DoubleIntegrator, System
+from hnr_planner.core.systems import (
+    Car,
+    DoubleIntegrator,
+    join_trajectories,
+    System,
+    Trajectory,
+)
 from hnr_planner.core.systems.double_integrator import limit_acceleration
 from hnr_planner.core.systems.primitives import contact
 import numpy as np
@@ -157,3 +163,29 @@ def test_the_controller_takes_the_best_acceleration_within_both_limits() -> None
         others = allowed[np.hypot(*(v + step * allowed).T) <= 2.0]
         nearest = np.hypot(*(others - wish).T).min()
         assert np.hypot(*(control - wish)) <= nearest + 1e-6
+
+
+def test_trajectories_are_joined_where_one_begins_as_the_other_ends() -> None:
+    system, rng = DoubleIntegrator(), np.random.default_rng(7)
+    states, controls = [rng.normal(size=4)], rng.normal(size=(5, 2))
+    durations = rng.uniform(0.1, 1.0, 5)
+    for control, duration in zip(controls, durations, strict=True):
+        states.append(system.propagate(states[-1], control, duration))
+    times = np.append(0.0, np.cumsum(durations))
+    whole = Trajectory(system, times, np.array(states), controls)
+
+    def piece(i: int, j: int) -> Trajectory:
+        after = j + 1
+        steps = times[i:after] - times[i], whole.states[i:after], controls[i:j]
+        return Trajectory(system, *steps)
+
+    stay = Trajectory(system, np.zeros(2), whole.states[[2, 2]], np.zeros((1, 2)))
+    joined = join_trajectories([piece(0, 2), stay, piece(2, 3), piece(3, 5)])
+    assert joined.times == pytest.approx(times, abs=1e-12)
+    assert np.array_equal(joined.states, whole.states)
+    assert np.array_equal(joined.controls, controls)
+    assert np.array_equal(join_trajectories([stay, stay]).states, stay.states)
+    with pytest.raises(HnrError, match='trajectory 1 must begin in the state'):
+        join_trajectories([piece(0, 2), piece(3, 5)])
+    with pytest.raises(HnrError, match='at least one'):
+        join_trajectories([])

@@ -1,4 +1,4 @@
-"""``plan`` for a system: ends, limits, statuses, bad input, and time."""
+"""``plan_trajectory``: ends, limits, statuses, bad input, and time."""
 
 import math
 from pathlib import Path
@@ -19,16 +19,26 @@ from test.core.trajectories.worlds import (
 import threading
 from typing import Any
 
-from hnr_planner.core import HnrError, plan, PlannerStatus, PlanResult
+from hnr_planner.core import (
+    GridSpace,
+    HnrError,
+    plan,
+    plan_trajectory,
+    PlannerStatus,
+    TrajectoryResult,
+)
+from hnr_planner.core.planning.planners.hit_and_run import HitAndRun
 from hnr_planner.core.systems import DoubleIntegrator
+from hnr_planner.core.trajectories.rrt import KinodynamicRRT
 import numpy as np
 import pytest
 
 
-def solve(start: Any = START, goal: Any = GOAL, **given: Any) -> PlanResult:
-    """Plan in the serpentine; no clock is in the way unless asked for."""
-    arguments = {'system': INTEGRATOR, 'seed': 1, 'time_limit': 1e6, **given}
-    return plan(SPACE, start, goal, **arguments)
+def solve(start: Any = START, goal: Any = GOAL, **given: Any) -> TrajectoryResult:
+    """Plan in the serpentine; no clock limits it unless asked for."""
+    arguments = {'system': INTEGRATOR, 'seed': 1, 'time_limit': math.inf, **given}
+    system = arguments.pop('system')
+    return plan_trajectory(SPACE, system, start, goal, **arguments)
 
 
 # -- where it ends
@@ -130,7 +140,7 @@ def test_ends_that_are_no_good_are_named() -> None:
     assert solve(goal=wall).status is PlannerStatus.INVALID_GOAL
     blocked = BLOCKED.copy()
     blocked[6] = True
-    result = plan(space_of(blocked), START, GOAL, system=INTEGRATOR)
+    result = plan_trajectory(space_of(blocked), INTEGRATOR, START, GOAL)
     assert result.status is PlannerStatus.UNREACHABLE and 'no path exists' in result.message
 
 
@@ -138,13 +148,15 @@ def test_ends_that_are_no_good_are_named() -> None:
 FIRST_REQUEST = """
 import sys
 sys.path.insert(0, '.')
-from hnr_planner.core import GridSpace, plan
+from hnr_planner.core import GridSpace, plan_trajectory
+from hnr_planner.core.planning.planners.hit_and_run import HitAndRun
 from hnr_planner.core.systems import DoubleIntegrator
+from hnr_planner.core.trajectories.rrt import KinodynamicRRT
 import numpy as np
 space = GridSpace.from_blocked(np.zeros((20, 20), bool), 0.5)
 system = DoubleIntegrator(max_speed=1e5)
 for start in ((-5e7, 5.0, (1e8 + 10.0) ** 0.5, 0.0), (2.0, 5.0, 0.0, 0.0)):
-    print(plan(space, start, (8.0, 8.0), system=system, seed=0).status.name)
+    print(plan_trajectory(space, system, start, (8.0, 8.0), seed=0).status.name)
 """
 
 
@@ -174,8 +186,7 @@ ESCAPES = {
 @pytest.mark.parametrize('begin', CERTAIN.values(), ids=CERTAIN.keys())
 @pytest.mark.parametrize('algorithm', ['auto', 'kinodynamic_rrt', 'kinodynamic_hit_and_run'])
 def test_an_inevitable_collision_is_proved(algorithm: str, begin: Any) -> None:
-    settings = {} if algorithm == 'auto' else {'boundary': 'forbidden'}
-    result = solve(begin, algorithm=algorithm, goal_radius=0.5, **settings)
+    result = solve(begin, algorithm=algorithm, goal_radius=0.5)
     assert result.status is PlannerStatus.INEVITABLE_COLLISION
     assert 'can neither stop' in result.message and result.iterations == 0
 
@@ -218,9 +229,111 @@ def survives(begin: Any, rng: np.random.Generator) -> bool:
 
 def test_an_inelastic_boundary_makes_no_collision_inevitable() -> None:
     begin = CERTAIN['head on, past the stopping distance']
-    result = solve(begin, algorithm='kinodynamic_rrt', goal_radius=0.5, simplify=False)
+    given = {'algorithm': 'kinodynamic_rrt', 'boundary': 'inelastic', 'goal_radius': 0.5}
+    result = solve(begin, simplify=False, **given)
     assert result.status is PlannerStatus.SOLVED
     assert faults(result, INTEGRATOR, BLOCKED, inelastic=True) == []
+
+
+# -- the boundary
+
+#: A hall whose wall is 0.1 m behind the goal.
+HALL = GridSpace.from_blocked(np.arange(40) >= np.full((40, 1), 30), resolution=0.1)
+BEFORE_WALL = (2.9, 2.0)
+SLOW = DoubleIntegrator(dim=2, max_acceleration=1.0, max_speed=1.5)
+KINDS = ['kinodynamic_connect', 'kinodynamic_hit_and_run', 'kinodynamic_rrt']
+
+
+@pytest.mark.parametrize('algorithm', KINDS)
+def test_nothing_stops_dead_at_a_wall(algorithm: str) -> None:
+    """Each of ten trajectories is as fast at the end of a step as at the begin of the next."""
+    for seed in range(10):
+        result = plan_trajectory(
+            HALL,
+            SLOW,
+            (0.5, 2.0, 0.0, 0.0),
+            BEFORE_WALL,
+            algorithm=algorithm,
+            goal_radius=0.2,
+            goal_speed=0.5,
+            seed=seed,
+            time_limit=math.inf,
+        )
+        motion = result.trajectory
+        assert motion is not None
+        gained = np.diff(motion.times)[:, np.newaxis] * motion.controls
+        assert np.abs(np.diff(motion.states[:, 2:], axis=0) - gained).max() < 1e-6
+
+
+@pytest.mark.parametrize('goal', [(0.5, 2.0), (2.8, 2.0)], ids=['far', 'around the start'])
+@pytest.mark.parametrize('algorithm', KINDS)
+def test_a_start_that_must_hit_the_wall_is_an_inevitable_collision(
+    algorithm: str, goal: Any
+) -> None:
+    result = plan_trajectory(
+        HALL, SLOW, (2.8, 2.0, 1.5, 0.0), goal, algorithm=algorithm, goal_radius=0.3, seed=1
+    )
+    assert result.status is PlannerStatus.INEVITABLE_COLLISION
+    assert result.trajectory is None
+
+
+BEGINS = [START, state(0.75, 0.75, 1.5, 0.0), state(0.75, 0.9, 1.6, 1.0)]
+
+
+@pytest.mark.parametrize('boundary', ['forbidden', 'inelastic'])
+@pytest.mark.parametrize('algorithm', KINDS)
+def test_no_step_is_shorter_than_a_nanosecond(algorithm: str, boundary: str) -> None:
+    if algorithm == 'kinodynamic_connect' and boundary == 'inelastic':
+        pytest.skip('it never meets the boundary')
+    shortest = math.inf
+    for begin in BEGINS:
+        for seed in range(4):
+            given = {'goal_radius': 0.4, 'goal_speed': 1.0, 'seed': seed, 'boundary': boundary}
+            trajectory = solve(begin, algorithm=algorithm, **given).trajectory
+            assert trajectory is not None
+            shortest = min(shortest, float(np.diff(trajectory.times).min()))
+    assert shortest >= 1e-9
+
+
+def test_a_start_at_rest_beside_the_goal_takes_one_step() -> None:
+    goal = START[:2] + [5e-9, 0.0]
+    trajectory = solve(goal=goal).trajectory
+    assert trajectory is not None
+    assert np.diff(trajectory.times).min() >= 1e-9
+    assert np.array_equal(trajectory.positions[-1], goal)
+
+
+# -- options
+
+
+def test_without_simplifying_the_hybrid_drives_the_path_as_it_was_found() -> None:
+    raw, short = solve(simplify=False), solve()
+    assert raw.first_solution is not None and short.first_solution is not None
+    assert np.array_equal(raw.first_solution.path, raw.path)
+    assert np.array_equal(short.first_solution.path, raw.path)
+    assert short.first_solution.length == raw.length
+    assert len(short.path) < len(raw.path) and short.length < raw.length
+    assert faults(raw, INTEGRATOR, BLOCKED) == []
+
+
+def test_a_short_time_to_optimize_takes_nothing_from_the_shortening_of_every_request() -> None:
+    plain, optimized = solve(), solve(optimize_for=1e-9)
+    assert plain.trajectory is not None and optimized.trajectory is not None
+    assert np.array_equal(plain.trajectory.states, optimized.trajectory.states)
+
+
+def test_a_planner_value_brings_its_boundary() -> None:
+    given = {'goal_radius': 0.5, 'simplify': False, 'seed': 3}
+    value = solve(algorithm=KinodynamicRRT(boundary='inelastic'), **given)
+    named = solve(algorithm='kinodynamic_rrt', boundary='inelastic', **given)
+    assert value.trajectory is not None and named.trajectory is not None
+    assert np.array_equal(value.trajectory.states, named.trajectory.states)
+
+
+def test_reprs_say_what_was_found() -> None:
+    result = solve()
+    assert f'trajectory={result.trajectory!r}' in repr(result)
+    assert 'of a DoubleIntegrator' in repr(result.trajectory)
 
 
 # -- bad input
@@ -242,7 +355,34 @@ BAD: dict[str, tuple[dict[str, Any], str]] = {
     'class': ({'system': DoubleIntegrator}, 'system must be a system'),
     'dimension': ({'system': DoubleIntegrator(dim=3)}, 'dimension of the space, 2, got 3'),
     'algorithm': ({'algorithm': 'rrt'}, 'algorithm must be one of auto, kinodynamic_connect'),
-    'alternatives': ({'alternatives': 2}, 'alternatives must be 1 for a system'),
+    'alternatives': ({'alternatives': 2}, 'plan_trajectory takes no alternatives'),
+    'clearance': ({'clearance': 0.5}, 'plan_trajectory takes no clearance'),
+    'simplify a car': ({'system': CAR, 'simplify': True, 'goal_radius': 1.0}, 'for a Car: only'),
+    'optimize a car': (
+        {'system': CAR, 'optimize_for': 0.1, 'goal_radius': 1.0},
+        'optimize_for must be 0 for a Car',
+    ),
+    'optimize a car again': (
+        {'system': CAR, 'optimize_iterations': 1, 'goal_radius': 1.0},
+        'optimize_iterations must be 0 for a Car',
+    ),
+    'optimize what is raw': (
+        {'simplify': False, 'optimize_iterations': 1},
+        'optimize_iterations must be 0 when simplify is false',
+    ),
+    'a planner of paths': ({'algorithm': HitAndRun()}, 'hit_and_run plans paths of points'),
+    'hybrid at the boundary': (
+        {'boundary': 'inelastic'},
+        "boundary must be 'forbidden' for this kinodynamic_connect",
+    ),
+    'boundary of a value': (
+        {'algorithm': KinodynamicRRT(), 'boundary': 'inelastic'},
+        "boundary must be 'forbidden' for this kinodynamic_rrt",
+    ),
+    'time_step too short': (
+        {'algorithm': 'kinodynamic_rrt', 'time_step': 1e-10},
+        'time_step must be at least',
+    ),
     'connect a car': (
         {'system': CAR, 'algorithm': 'kinodynamic_connect'},
         'connects states of a DoubleIntegrator only, got a Car',
@@ -254,7 +394,7 @@ BAD: dict[str, tuple[dict[str, Any], str]] = {
         {'algorithm': 'kinodynamic_rrt', 'velocity_weight': -1.0},
         'velocity_weight must be in 0',
     ),
-    'setting': ({'boundary': 'inelastic'}, "has no setting 'boundary'"),
+    'setting': ({'time_step': 0.1}, "has no setting 'time_step'"),
 }
 
 
@@ -264,6 +404,7 @@ def test_bad_input_is_named(given: dict[str, Any], message: str) -> None:
         solve(**given)
 
 
-def test_a_speed_at_the_goal_goes_with_a_system() -> None:
-    with pytest.raises(HnrError, match='goal_speed goes with a system only'):
-        plan(SPACE, START[:2], GOAL, goal_speed=1.0)
+@pytest.mark.parametrize('given', [{'goal_speed': 1.0}, {'system': INTEGRATOR}])
+def test_plan_names_plan_trajectory_for_a_system(given: dict[str, Any]) -> None:
+    with pytest.raises(HnrError, match='plan_trajectory'):
+        plan(SPACE, START[:2], GOAL, **given)
