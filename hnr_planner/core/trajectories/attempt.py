@@ -119,9 +119,10 @@ def _shorten_within(
     request: KinodynamicRequest, motion: Motion, rng: Stream, proposals: float, budget: Budget
 ) -> Motion:
     """Return a motion after so many proposals for a shorter one, fewer where the budget ends."""
+    brakes = request.planner.boundary == 'forbidden'
     while proposals > 0 and budget.stop() is None:
         batch = int(min(proposals, PROPOSALS_IN_A_BATCH))
-        work = partial(shorten, request.problem, motion, rng, batch)
+        work = partial(shorten, request.problem, motion, rng, batch, brakes)
         motion = budget.within(work, motion)
         proposals -= batch
     return motion

@@ -39,7 +39,7 @@ def compile_kernels(request: KinodynamicRequest) -> None:
         compile_connect(problem)
     motion = Motion(np.zeros(1), np.stack([rest, rest]), np.zeros((1, system.control_dim)))
     if request.shortens:
-        shorten(problem, motion, stream(0), 0)
+        shorten(problem, motion, stream(0), 0, True)
     unlimited = Budget(np.inf)
     trajectory = to_trajectory(request, motion, unlimited)
     is_free(request, trajectory, unlimited)

@@ -73,11 +73,10 @@ def plan_trajectory(
     goal_speed : float
         Largest speed at the end [m/s]; 0, at rest, ``kinodynamic_connect`` alone can do.
     boundary : 'forbidden' or 'inelastic'
-        What the boundary of the space does. Forbidden: it is never met, and no state on the way
-        has a collision ahead that braking straight to rest could not avoid; a start that has is
-        an INEVITABLE_COLLISION where that can be proved. Inelastic: it stops the robot at once,
-        which goes on from there (the paper's), and trajectories may use that. A planner value
-        brings its own.
+        What the boundary of the space does. Forbidden: it is never met, and the end of the
+        trajectory can be braked straight to rest before it; a start whose collision can be proved
+        is an INEVITABLE_COLLISION. Inelastic (the paper's): it stops the robot at once, which
+        goes on from there, and trajectories may use that. A planner value brings its own.
     time_limit : float
         Seconds for the whole call, inf for no limit. Compilation does not count.
     max_iterations : int, optional

@@ -19,6 +19,7 @@ from hnr_planner.core.trajectories.problem import (
     Motion,
     SHORTEST_STEP,
 )
+from hnr_planner.core.trajectories.steps import can_brake
 from hnr_planner.core.trajectories.two_point import connect, empty_connection
 import numpy as np
 
@@ -31,13 +32,19 @@ LEAST_SHIFT = 1e-3
 LEAST_GAIN = 1e-6
 
 
-def shorten(problem: KinodynamicProblem, motion: Motion, rng: Stream, proposals: int) -> Motion:
-    """Return a motion from the same start into the same goal region after some proposals."""
-    return Motion(*_shorten(problem, *motion, rng, proposals))
+def shorten(
+    problem: KinodynamicProblem, motion: Motion, rng: Stream, proposals: int, brakes: bool
+) -> Motion:
+    """
+    Return a motion from the same start into the same goal region after some proposals.
+
+    With ``brakes`` its end can be braked straight to rest if that of ``motion`` can.
+    """
+    return Motion(*_shorten(problem, *motion, rng, proposals, brakes))
 
 
 @kernel
-def _shorten(problem, durations, states, controls, rng, proposals):
+def _shorten(problem, durations, states, controls, rng, proposals, brakes):
     """Apply proposals to a motion; return the fields of the motion that it becomes."""
     problem, rng = borrowed(problem), borrowed(rng)
     system, dim = problem.system, controls.shape[1]
@@ -56,7 +63,7 @@ def _shorten(problem, durations, states, controls, rng, proposals):
         move(system, states[i], controls[i], after_i, a)
         move(system, states[j], controls[j], after_j, b)
         if to_end:
-            _draw_end(problem, rng, states[-1], b)
+            _draw_end(problem, rng, states[-1], b, brakes)
         if uniform(rng) < THROUGH:
             k, after_k = _locate(durations, begin + uniform(rng) * window)
             move(system, states[k], controls[k], after_k, between)
@@ -129,7 +136,7 @@ def _shift(system, rng, window, state):
 
 
 @kernel
-def _draw_end(problem, rng, last, end):
+def _draw_end(problem, rng, last, end, brakes):
     """Draw an end in the goal region, at a speed allowed there: near the last one or anywhere."""
     geometric, dim = problem.geometric, len(problem.geometric.goal)
     fraction = LEAST_SHIFT ** uniform(rng) if uniform(rng) < 0.5 else 1.0
@@ -144,7 +151,7 @@ def _draw_end(problem, rng, last, end):
         draw_in_ball(fastest, rng, offset)
         for i in range(dim):
             end[dim + i] += fraction * (offset[i] - end[dim + i])
-    if not is_at_goal(problem, end):
+    if not is_at_goal(problem, end) or (brakes and not can_brake(problem, end, dim)):
         end[:] = last
 
 
