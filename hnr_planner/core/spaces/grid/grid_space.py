@@ -13,7 +13,7 @@ from hnr_planner.core.spaces.curves.curve import first_exit_on_curve
 from hnr_planner.core.spaces.grid.cells import Bools, read_blocked, read_occupancy
 from hnr_planner.core.spaces.grid.components import island_points, nearest_in_component
 from hnr_planner.core.spaces.grid.curves import first_exit_from_grid
-from hnr_planner.core.spaces.grid.fields import components, free_distance, inflate, is_inflated
+from hnr_planner.core.spaces.grid.fields import components, free_distance, inflate
 from hnr_planner.core.spaces.grid.frame import decimal, GridFrame
 from hnr_planner.core.spaces.grid.lattice import build_lattice, Lattice, rough_path
 from hnr_planner.core.spaces.grid.traversal import GridData
