@@ -8,7 +8,7 @@ from test.laws.test_space_laws import random_points, size
 
 from hnr_planner.core.kernels.kernel import interpreted, kernel
 from hnr_planner.core.spaces import primitives
-from hnr_planner.core.spaces.primitives import chord
+from hnr_planner.core.spaces.primitives import chord_or_empty
 import numpy as np
 import pytest
 
@@ -40,13 +40,13 @@ def lines(space, rng):
 
 def test_the_closure_holds_every_free_point(space, rng):
     points = random_points(space, rng, 20 * N)
-    assert touching(space.part, points[space.contains(points)]).all()
+    assert touching(space.compiled, points[space.contains(points)]).all()
 
 
 def test_the_closure_holds_the_ends_of_chords(space, rng):
     """Just inside an end is free, just beyond it, almost surely, no point of the closure."""
     for point, direction in lines(space, rng):
-        lower, upper = chord(space.part, point, direction)
+        lower, upper = chord_or_empty(space.compiled, point, direction)
         if lower == upper:
             continue
         ends = (
@@ -54,14 +54,14 @@ def test_the_closure_holds_the_ends_of_chords(space, rng):
             + np.array([lower - 1e-9, lower + 1e-9, upper - 1e-9, upper + 1e-9])[:, np.newaxis]
             * direction
         )
-        assert touching(space.part, ends).tolist() == [False, True, True, False]
+        assert touching(space.compiled, ends).tolist() == [False, True, True, False]
 
 
 def test_nothing_is_free_before_a_line_enters_and_something_after_it(space, rng):
     verdicts = set()
     for point, direction in lines(space, rng):
-        first = entering(space.part, point, direction, 0.0)
-        assert (first == 0.0) == bool(touching(space.part, point[np.newaxis])[0])
+        first = entering(space.compiled, point, direction, 0.0)
+        assert (first == 0.0) == bool(touching(space.compiled, point[np.newaxis])[0])
         before = np.linspace(0.0, min(first, 3.0), ALONG)[:-1, np.newaxis]
         assert first == 0.0 or not space.contains(point + before * direction).any()
         if first < np.inf:
@@ -74,24 +74,24 @@ def test_a_line_that_is_in_stays_where_it_is_and_one_that_is_out_too(space, rng)
     for point, direction in lines(space, rng):
         t = rng.uniform(0.0, 1.0)
         if space.contains(point + t * direction):
-            assert entering(space.part, point, direction, t) == t
-            assert leaving(space.part, point, direction, t, np.inf) > t
+            assert entering(space.compiled, point, direction, t) == t
+            assert leaving(space.compiled, point, direction, t, np.inf) > t
         else:
-            assert leaving(space.part, point, direction, t, np.inf) == t
+            assert leaving(space.compiled, point, direction, t, np.inf) == t
 
 
 def test_a_line_leaves_where_it_would_have_left_from_anywhere_before(space, rng):
     for point, direction in lines(space, rng):
-        _, upper = chord(space.part, point, direction)
+        _, upper = chord_or_empty(space.compiled, point, direction)
         for t in rng.uniform(0.0, 1.0, 3) * upper:
-            end = leaving(space.part, point, direction, t, np.inf)
+            end = leaving(space.compiled, point, direction, t, np.inf)
             assert end == pytest.approx(upper, abs=1e-9)
 
 
 def test_interpreted_and_compiled_answer_alike(space, rng):
     for (point, direction), _ in zip(lines(space, rng), range(30), strict=False):
         for function, rest in ((leaving, (0.0, np.inf)), (entering, (0.0,))):
-            compiled = function(space.part, point, direction, *rest)
+            compiled = function(space.compiled, point, direction, *rest)
             with np.errstate(divide='ignore', invalid='ignore', over='ignore'):
-                plain = interpreted(function)(space.part, point, direction, *rest)
+                plain = interpreted(function)(space.compiled, point, direction, *rest)
             assert compiled == plain

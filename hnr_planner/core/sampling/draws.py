@@ -11,7 +11,7 @@ import math
 
 from hnr_planner.core.kernels.kernel import inlined, kernel
 from hnr_planner.core.kernels.streams import draw_normals, uniform
-from hnr_planner.core.spaces.primitives import around, contains
+from hnr_planner.core.spaces.primitives import chord, contains
 import numpy as np
 
 #: After so many consecutive redraws the chord holds no other number, and the step stays at ``x``.
@@ -49,7 +49,7 @@ def draw_in_ball(radius, rng, u):
 @kernel
 def draw_on_chord(space, x, u, rng, y):
     """Draw ``y`` uniformly from the chord of ``x`` along ``u``; return the number of redraws."""
-    lower, upper = around(space, x, u, -u)
+    lower, upper = chord(space, x, u, -u)
     return draw_between(space, x, u, lower, upper, rng, y)
 
 

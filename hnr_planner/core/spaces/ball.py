@@ -24,14 +24,14 @@ class BallData(NamedTuple):
         Their centres.
     radii : (k,)
         Their radii.
-    gap : float
+    max_gap : float
         What may lie between two of them.
 
     """
 
     centres: Floats
     radii: Floats
-    gap: float
+    max_gap: float
 
 
 class BallSpace(Space):

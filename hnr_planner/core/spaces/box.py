@@ -22,14 +22,14 @@ class BoxData(NamedTuple):
     ----------
     lower, upper : (k, dim)
         Their corners.
-    gap : float
+    max_gap : float
         What may lie between two of them.
 
     """
 
     lower: Floats
     upper: Floats
-    gap: float
+    max_gap: float
 
 
 class BoxSpace(Space):

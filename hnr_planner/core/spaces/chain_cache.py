@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 from hnr_planner.core.checks import Floats
 from hnr_planner.core.kernels.dispatch import dispatched
 from hnr_planner.core.kernels.kernel import inlined, kernel
-from hnr_planner.core.spaces.primitives import around, contains
+from hnr_planner.core.spaces.primitives import chord, contains
 
 #: Steps after which a chain has all that is remembered worked out anew, so that rounding does not
 #: add up. They count from its beginning: a run that was stopped goes on to the same last bit.
@@ -74,7 +74,7 @@ def chord_cached(space: Any, cache: Any, u: Any, axis: int) -> tuple[float, floa
     """
     for i in range(len(u)):
         cache.back[i] = -u[i]
-    return around(space, cache.x, u, cache.back)
+    return chord(space, cache.x, u, cache.back)
 
 
 @dispatched

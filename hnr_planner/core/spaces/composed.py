@@ -7,20 +7,20 @@ from hnr_planner.core.errors import SpaceError
 from hnr_planner.core.spaces.space import Space
 
 
-def check_parts(parts: Iterable[Any]) -> tuple[Space, ...]:
-    """Return the parts of a composed space, at least one, or raise SpaceError."""
-    spaces = tuple(parts)
+def check_members(members: Iterable[Any]) -> tuple[Space, ...]:
+    """Return the members of a composed space, at least one, or raise SpaceError."""
+    spaces = tuple(members)
     if not spaces:
-        raise SpaceError('there must be at least one part, got none')
-    for part in spaces:
-        if not isinstance(part, Space):
-            raise SpaceError(f'a part must be a space, got {part!r}')
+        raise SpaceError('there must be at least one member, got none')
+    for member in spaces:
+        if not isinstance(member, Space):
+            raise SpaceError(f'a member must be a space, got {member!r}')
     return spaces
 
 
-def check_same_dim(parts: Iterable[Space]) -> int:
-    """Return the dimension that all parts have, or raise SpaceError."""
-    dims = sorted({part.dim for part in parts})
+def check_same_dim(members: Iterable[Space]) -> int:
+    """Return the dimension that all members have, or raise SpaceError."""
+    dims = sorted({member.dim for member in members})
     if len(dims) > 1:
-        raise SpaceError(f'the parts must be of one dimension, got {dims}')
+        raise SpaceError(f'the members must be of one dimension, got {dims}')
     return dims[0]

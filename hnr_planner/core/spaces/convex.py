@@ -3,7 +3,7 @@ Convex pieces: sets that cut one interval out of every line.
 
 The data of such a space holds one piece or several, which together mean their union: pieces of one
 kind lie in the same arrays, so that a union of many is one short loop. Each array has one row for
-each piece, and the last field, ``gap``, is how far apart two pieces may be for a ray to pass from
+each piece, and the last field, ``max_gap``, is how far apart two pieces may be for a ray to pass from
 one to the other. A type decorated with ``convex`` registers kernels for ``count``, ``holds`` and
 ``span``, and the primitives follow from them.
 """
@@ -54,8 +54,8 @@ def convex(data_type: DataType) -> DataType:
         (primitives.touches, _touches),
         (primitives.first_exit, _first_exit),
         (primitives.first_entry, _first_entry),
-        (primitives.around, _around),
-        (primitives.apart, _apart),
+        (primitives.chord, _chord),
+        (primitives.gap, _gap),
     ):
         primitive.register(data_type)(answer)
     return data_type
@@ -66,10 +66,10 @@ def is_convex(data: Any) -> bool:
     return span.knows(data)
 
 
-def pack(pieces: Sequence[Any], gap: float) -> Any:
+def pack(pieces: Sequence[Any], max_gap: float) -> Any:
     """Return the data of all pieces of several data of one type, between which gaps close."""
     fields = zip(*(data[:-1] for data in pieces), strict=True)
-    return type(pieces[0])(*map(np.concatenate, fields), gap)
+    return type(pieces[0])(*map(np.concatenate, fields), max_gap)
 
 
 @kernel
@@ -100,13 +100,13 @@ def _first_exit(space, x, u, t, enough):
             s = max(s, upper)
     if s == t or count(space) == 1:
         return s
-    gap = space.gap / norm(u)
+    max_gap = space.max_gap / norm(u)
     reaching = True
     while reaching and s <= enough:
         reaching = False
         for k in range(count(space)):
             lower, upper = span(space, k, x, u, False)
-            if lower < s + gap < upper:
+            if lower < s + max_gap < upper:
                 s, reaching = upper, True
     return s
 
@@ -122,7 +122,7 @@ def _first_entry(space, x, u, t):
 
 
 @kernel
-def _around(space, x, u, back):
+def _chord(space, x, u, back):
     """Take both ends from one piece; several may reach on from one to the next."""
     if count(space) > 1:
         return -first_exit(space, x, back, 0.0, math.inf), first_exit(space, x, u, 0.0, math.inf)
@@ -131,7 +131,7 @@ def _around(space, x, u, back):
 
 
 @kernel
-def _apart(space, x, u, back):
+def _gap(space, x, u, back):
     """Let every piece cut off what lies behind it, on either side."""
     lower, upper = -math.inf, math.inf
     for k in range(count(space)):

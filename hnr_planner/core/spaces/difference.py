@@ -6,14 +6,14 @@ from typing import Any, NamedTuple
 from hnr_planner.core.checks import check_point, Floats
 from hnr_planner.core.errors import SpaceError
 from hnr_planner.core.kernels.kernel import kernel
-from hnr_planner.core.spaces.composed import check_parts, check_same_dim
+from hnr_planner.core.spaces.composed import check_members, check_same_dim
 from hnr_planner.core.spaces.primitives import (
-    apart,
-    around,
+    chord,
     component,
     contains,
     first_entry,
     first_exit,
+    gap,
     touches,
 )
 from hnr_planner.core.spaces.space import Space
@@ -55,13 +55,13 @@ class DifferenceSpace(Space):
     """
 
     def __init__(self, base: Space, *removed: Space) -> None:
-        (self.base,) = check_parts((base,))
-        self.removed = check_parts(removed)
+        (self.base,) = check_members((base,))
+        self.removed = check_members(removed)
         self.dim = check_same_dim((self.base, *self.removed))
-        for k, part in enumerate(self.removed):
-            if part.covers_box(*self.base.bounds):
-                raise SpaceError(f'nothing is left: removed part {k} covers the whole base')
-        self.data = DifferenceData(self.base.part, UnionSpace(*self.removed).part)
+        for k, member in enumerate(self.removed):
+            if member.covers_box(*self.base.bounds):
+                raise SpaceError(f'nothing is left: removed member {k} covers the whole base')
+        self.data = DifferenceData(self.base.compiled, UnionSpace(*self.removed).compiled)
 
     @property
     def bounds(self) -> tuple[Floats, Floats]:
@@ -79,10 +79,10 @@ class DifferenceSpace(Space):
         x = check_point('point', point, self.dim)
         if not self.base.contains(x):
             return self.base.why_not_free(x)
-        for k, part in enumerate(self.removed):
-            if part.contains(x):
-                return f'inside removed part {k}'
-        return 'on the boundary of a removed part'
+        for k, member in enumerate(self.removed):
+            if member.contains(x):
+                return f'inside removed member {k}'
+        return 'on the boundary of a removed member'
 
 
 @contains.register(DifferenceData)
@@ -117,11 +117,11 @@ def _first_entry(difference, x, u, t):
     return s
 
 
-@around.register(DifferenceData)
+@chord.register(DifferenceData)
 @kernel
-def _around(difference, x, u, back):
-    lower, upper = around(difference.base, x, u, back)
-    first, last = apart(difference.removed, x, u, back)
+def _chord(difference, x, u, back):
+    lower, upper = chord(difference.base, x, u, back)
+    first, last = gap(difference.removed, x, u, back)
     return max(lower, first), min(upper, last)
 
 

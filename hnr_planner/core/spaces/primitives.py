@@ -51,7 +51,7 @@ def first_entry(space: Any, x: Any, u: Any, t: float) -> float:
 
 @dispatched
 @kernel
-def around(space: Any, x: Any, u: Any, back: Any) -> tuple[float, float]:
+def chord(space: Any, x: Any, u: Any, back: Any) -> tuple[float, float]:
     """
     Return the largest open interval of ``x + s u`` around ``s = 0`` that is free.
 
@@ -62,7 +62,7 @@ def around(space: Any, x: Any, u: Any, back: Any) -> tuple[float, float]:
 
 @dispatched
 @kernel
-def apart(space: Any, x: Any, u: Any, back: Any) -> tuple[float, float]:
+def gap(space: Any, x: Any, u: Any, back: Any) -> tuple[float, float]:
     """
     Return the largest open interval of ``x + s u`` around ``s = 0`` that does not touch ``space``.
 
@@ -127,11 +127,11 @@ def part_of(space, x):
 
 
 @kernel
-def chord(space, x, u):
+def chord_or_empty(space, x, u):
     """Return the ends of the largest free interval of ``x + s u`` around ``s = 0``."""
     if not contains(space, x):
         return 0.0, 0.0
-    return around(space, x, u, -u)
+    return chord(space, x, u, -u)
 
 
 @kernel

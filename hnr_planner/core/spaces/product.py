@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 
 from hnr_planner.core.checks import check_point, Floats
 from hnr_planner.core.kernels.kernel import kernel
-from hnr_planner.core.spaces.composed import check_parts
+from hnr_planner.core.spaces.composed import check_members
 from hnr_planner.core.spaces.primitives import (
     component,
     contains,
@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 #: No factor has more parts than this.
-PARTS_MAX = 2**31
+COMPONENTS_MAX = 2**31
 
 
 class ProductData(NamedTuple):
@@ -57,13 +57,13 @@ class ProductSpace(Space):
     """
 
     def __init__(self, *factors: Space) -> None:
-        self.factors = check_parts(factors)
+        self.factors = check_members(factors)
         ends = np.cumsum([0, *(factor.dim for factor in self.factors)]).tolist()
         self.dim = ends[-1]
         self._slices = [slice(first, last) for first, last in pairwise(ends)]
-        self.data = self.factors[0].part
+        self.data = self.factors[0].compiled
         for factor, part in zip(self.factors[1:], self._slices[1:], strict=True):
-            self.data = ProductData(self.data, factor.part, part.start)
+            self.data = ProductData(self.data, factor.compiled, part.start)
 
     @property
     def bounds(self) -> tuple[Floats, Floats]:
@@ -151,4 +151,4 @@ def _component(product, x):
     """Return a number for each pair of parts."""
     k = product.split
     one, other = component(product.one, x[:k]), component(product.other, x[k:])
-    return one + PARTS_MAX * (other - 1) if one > 0 and other > 0 else 0
+    return one + COMPONENTS_MAX * (other - 1) if one > 0 and other > 0 else 0

@@ -13,7 +13,12 @@ from abc import ABC, abstractmethod
 from typing import Any, NamedTuple
 
 from hnr_planner.core.checks import check_direction, check_point, check_points, Floats
-from hnr_planner.core.spaces.primitives import are_free, chord, first_blocked_segment, sees_from
+from hnr_planner.core.spaces.primitives import (
+    are_free,
+    chord_or_empty,
+    first_blocked_segment,
+    sees_from,
+)
 import numpy as np
 from numpy.typing import ArrayLike
 
@@ -54,7 +59,7 @@ class Space(ABC):
         """Lower and upper corner (dim,) of a box around the free points, caller's frame."""
 
     @property
-    def part(self) -> Any:
+    def compiled(self) -> Any:
         """The compiled space in the caller's frame: what composed spaces are made of."""
         return self.data
 
@@ -164,7 +169,7 @@ class Space(ABC):
         # A power of two brings the direction near length 1 without changing one bit of it.
         _, exponent = np.frexp(np.abs(direction).max())
         near_unit = self.turn_to_kernel(np.ldexp(direction, -exponent))
-        lower, upper = chord(self.data, self.to_kernel(point), near_unit)
+        lower, upper = chord_or_empty(self.data, self.to_kernel(point), near_unit)
         return Chord(*(float(np.ldexp(s * self.scale, -exponent)) for s in (lower, upper)))
 
     def is_motion_valid(self, start: ArrayLike, end: ArrayLike) -> bool:

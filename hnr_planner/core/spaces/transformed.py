@@ -14,7 +14,7 @@ from hnr_planner.core.spaces.primitives import (
 import numpy as np
 
 
-class PlacedData(NamedTuple):
+class TransformedData(NamedTuple):
     """
     A compiled space whose frame a point enters as ``matrix x + offset``.
 
@@ -34,46 +34,50 @@ class PlacedData(NamedTuple):
     offset: Floats
 
 
-@contains.register(PlacedData)
+@contains.register(TransformedData)
 @kernel
-def _contains(placed, x):
-    return contains(placed.space, _point(placed, x))
+def _contains(transformed, x):
+    return contains(transformed.space, _point(transformed, x))
 
 
-@touches.register(PlacedData)
+@touches.register(TransformedData)
 @kernel
-def _touches(placed, x):
-    return touches(placed.space, _point(placed, x))
+def _touches(transformed, x):
+    return touches(transformed.space, _point(transformed, x))
 
 
-@first_exit.register(PlacedData)
+@first_exit.register(TransformedData)
 @kernel
-def _first_exit(placed, x, u, t, enough):
-    return first_exit(placed.space, _point(placed, x), _turned(placed.matrix, u), t, enough)
+def _first_exit(transformed, x, u, t, enough):
+    return first_exit(
+        transformed.space, _point(transformed, x), _rotated(transformed.matrix, u), t, enough
+    )
 
 
-@first_entry.register(PlacedData)
+@first_entry.register(TransformedData)
 @kernel
-def _first_entry(placed, x, u, t):
-    return first_entry(placed.space, _point(placed, x), _turned(placed.matrix, u), t)
+def _first_entry(transformed, x, u, t):
+    return first_entry(
+        transformed.space, _point(transformed, x), _rotated(transformed.matrix, u), t
+    )
 
 
-@component.register(PlacedData)
+@component.register(TransformedData)
 @kernel
-def _component(placed, x):
-    return component(placed.space, _point(placed, x))
+def _component(transformed, x):
+    return component(transformed.space, _point(transformed, x))
 
 
 @kernel
-def _point(placed, x):
-    y = _turned(placed.matrix, x)
+def _point(transformed, x):
+    y = _rotated(transformed.matrix, x)
     for i in range(len(y)):
-        y[i] += placed.offset[i]
+        y[i] += transformed.offset[i]
     return y
 
 
 @kernel
-def _turned(matrix, u):
+def _rotated(matrix, u):
     v = np.zeros(len(matrix))
     for i in range(len(matrix)):
         for j in range(len(u)):

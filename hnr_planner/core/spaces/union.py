@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 from hnr_planner.core.checks import Floats
 from hnr_planner.core.kernels.kernel import kernel
 from hnr_planner.core.lengths import norm
-from hnr_planner.core.spaces.composed import check_parts, check_same_dim
+from hnr_planner.core.spaces.composed import check_members, check_same_dim
 from hnr_planner.core.spaces.convex import is_convex, pack
 from hnr_planner.core.spaces.primitives import (
     contains,
@@ -28,74 +28,74 @@ class UnionData(NamedTuple):
     ----------
     one, other : NamedTuple
         Compiled spaces in one frame.
-    gap : float
+    max_gap : float
         What may lie between them for a ray to pass.
 
     """
 
     one: Any
     other: Any
-    gap: float
+    max_gap: float
 
 
 class UnionSpace(Space):
     """
-    The points of any of its parts.
+    The points of any of its members.
 
-    Parts that abut are joined: gaps up to 1e-9 of the diagonal are closed, so that rooms which end
+    Members that abut are joined: gaps up to 1e-9 of the diagonal are closed, so that rooms which end
     at .3 and begin at .1 + .2 let a ray through.
 
     Parameters
     ----------
-    *parts : Space
+    *members : Space
         At least one; all of one dimension, in one frame.
 
     Raises
     ------
     SpaceError
-        When the parts make no union.
+        When the members make no union.
 
     """
 
-    def __init__(self, *parts: Space) -> None:
-        self.parts = check_parts(parts)
-        self.dim = check_same_dim(self.parts)
+    def __init__(self, *members: Space) -> None:
+        self.members = check_members(members)
+        self.dim = check_same_dim(self.members)
         self.data = _joined(self._leaves(), self.margin)
 
     def _leaves(self) -> Iterable[Any]:
         """Compiled parts, and those of parts that are unions themselves."""
-        for part in self.parts:
-            yield from part._leaves() if isinstance(part, UnionSpace) else [part.part]
+        for member in self.members:
+            yield from member._leaves() if isinstance(member, UnionSpace) else [member.compiled]
 
     @property
     def bounds(self) -> tuple[Floats, Floats]:
         """Lower and upper corner (dim,)."""
-        lower, upper = zip(*(part.bounds for part in self.parts), strict=True)
+        lower, upper = zip(*(member.bounds for member in self.members), strict=True)
         return np.min(lower, axis=0), np.max(upper, axis=0)
 
     @property
     def typical_clearance(self) -> float:
         """Mean of those of the parts, in the caller's units."""
-        return float(np.mean([part.typical_clearance * part.scale for part in self.parts]))
+        return float(np.mean([member.typical_clearance * member.scale for member in self.members]))
 
     def covers_box(self, lower: Floats, upper: Floats) -> bool:
         """Say whether one of the parts is known to."""
-        return any(part.covers_box(lower, upper) for part in self.parts)
+        return any(member.covers_box(lower, upper) for member in self.members)
 
     def why_not_free(self, point: ArrayLike) -> str:
         """Say in words why ``point`` (dim,) is not free."""
-        reasons = '; '.join(part.why_not_free(point) for part in self.parts)
-        return f'in none of the {len(self.parts)} parts of the union: {reasons}'
+        reasons = '; '.join(member.why_not_free(point) for member in self.members)
+        return f'in none of the {len(self.members)} members of the union: {reasons}'
 
 
-def _joined(leaves: Iterable[Any], gap: float) -> Any:
+def _joined(leaves: Iterable[Any], max_gap: float) -> Any:
     """Return compiled parts as one, with convex pieces of a kind in the same arrays."""
     kinds: dict[Any, list[Any]] = {}
     for leaf in leaves:
         # Those that cannot be packed stay alone.
         kinds.setdefault(type(leaf) if is_convex(leaf) else id(leaf), []).append(leaf)
-    parts = [pack(kind, gap) if is_convex(kind[0]) else kind[0] for kind in kinds.values()]
-    return reduce(lambda one, other: UnionData(one, other, gap), parts)
+    packed = [pack(kind, max_gap) if is_convex(kind[0]) else kind[0] for kind in kinds.values()]
+    return reduce(lambda one, other: UnionData(one, other, max_gap), packed)
 
 
 @contains.register(UnionData)
@@ -117,10 +117,10 @@ def _first_exit(union, x, u, t, enough):
     s = max(first_exit(union.one, x, u, t, enough), first_exit(union.other, x, u, t, enough))
     if s == t:
         return t
-    gap = union.gap / norm(u)
+    max_gap = union.max_gap / norm(u)
     before = t
     while before < s <= enough:
-        before, probe = s, s + gap
+        before, probe = s, s + max_gap
         for end in (
             first_exit(union.one, x, u, probe, enough),
             first_exit(union.other, x, u, probe, enough),

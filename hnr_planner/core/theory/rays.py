@@ -36,7 +36,7 @@ def reach(space: Space, points: Floats, directions: Floats) -> Floats:
     (k,) float64
 
     """
-    return _reach(space.part, *_in_rows(points, directions))
+    return _reach(space.compiled, *_in_rows(points, directions))
 
 
 def chords(space: Space, points: Floats, directions: Floats) -> tuple[Floats, Floats]:
@@ -46,7 +46,7 @@ def chords(space: Space, points: Floats, directions: Floats) -> tuple[Floats, Fl
     ``points`` and ``directions`` are (k, dim), directions unit vectors; 0 at points not free.
     """
     points, directions = _in_rows(points, directions)
-    return _reach(space.part, points, -directions), _reach(space.part, points, directions)
+    return _reach(space.compiled, points, -directions), _reach(space.compiled, points, directions)
 
 
 def pieces(
@@ -73,7 +73,7 @@ def pieces(
 
     """
     points, directions = _in_rows(points, directions)
-    return _pieces(space.part, points, directions, lower, upper)
+    return _pieces(space.compiled, points, directions, lower, upper)
 
 
 def lengths_within(

@@ -19,7 +19,7 @@ from hnr_planner.core.planning.planners import nearest, rrt
 from hnr_planner.core.planning.planners.hit_and_run import _walk
 from hnr_planner.core.planning.postprocessing import clearance as stand_off
 from hnr_planner.core.planning.postprocessing import shortcuts
-from hnr_planner.core.spaces.primitives import chord
+from hnr_planner.core.spaces.primitives import chord_or_empty
 import numpy as np
 import pytest
 
@@ -128,7 +128,7 @@ def test_the_chord():
     directions = rng.standard_normal((300, 2))
     points = rng.uniform(LOWER, UPPER, (300, 2))
     for x, u in zip(points, directions, strict=True):
-        assert chord(GRID.data, x, u) == interpreted(chord)(GRID.data, x, u)
+        assert chord_or_empty(GRID.data, x, u) == interpreted(chord_or_empty)(GRID.data, x, u)
 
 
 def test_hit_and_run():

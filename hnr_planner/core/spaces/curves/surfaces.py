@@ -223,13 +223,13 @@ def _mark_difference(difference, curve, end, marks, n):
 @slack.register(BallData)
 @kernel
 def _own_gap(space):
-    return space.gap
+    return space.max_gap
 
 
 @slack.register(UnionData)
 @kernel
 def _gap_of_union(union):
-    return max(union.gap, max(slack(union.one), slack(union.other)))
+    return max(union.max_gap, max(slack(union.one), slack(union.other)))
 
 
 @slack.register(DifferenceData)

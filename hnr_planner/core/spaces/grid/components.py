@@ -28,7 +28,7 @@ def island_points(blocked_with_rim: Bools) -> NDArray[np.float64]:
 
 
 @kernel
-def nearest_in_part(labels, part, target, margin):
+def nearest_in_component(labels, component, target, margin):
     """
     Find the point of a part nearest to ``target`` (2,): (point (2,), distance), kernel frame.
 
@@ -41,7 +41,7 @@ def nearest_in_part(labels, part, target, margin):
         if abs(y - target[1]) >= least:
             continue
         for column in range(columns):
-            if labels[row, column] == part:
+            if labels[row, column] == component:
                 x = min(max(target[0], column + margin), column + 1 - margin)
                 distance = math.hypot(x - target[0], y - target[1])
                 if distance < least:

@@ -9,14 +9,14 @@ from hnr_planner.core.checks import check_point, check_points, check_real, Float
 from hnr_planner.core.errors import RequestError, SpaceError
 from hnr_planner.core.spaces.clearance import path_clearance, point_clearance
 from hnr_planner.core.spaces.grid.cells import Bools, read_blocked, read_occupancy
-from hnr_planner.core.spaces.grid.components import island_points, nearest_in_part
+from hnr_planner.core.spaces.grid.components import island_points, nearest_in_component
 from hnr_planner.core.spaces.grid.fields import components, free_distance, inflate
 from hnr_planner.core.spaces.grid.frame import GridFrame
 from hnr_planner.core.spaces.grid.lattice import build_lattice, Lattice, rough_path
 from hnr_planner.core.spaces.grid.traversal import GridData
 from hnr_planner.core.spaces.primitives import part_of
 from hnr_planner.core.spaces.space import Space
-from hnr_planner.core.spaces.transformed import PlacedData
+from hnr_planner.core.spaces.transformed import TransformedData
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -142,9 +142,9 @@ class GridSpace(Space):
         return self.frame.origin
 
     @cached_property
-    def part(self) -> PlacedData:
+    def compiled(self) -> TransformedData:
         """The compiled grid in the map frame."""
-        return PlacedData(self.data, *self.frame.to_cells)
+        return TransformedData(self.data, *self.frame.to_cells)
 
     @property
     def scale(self) -> float:
@@ -247,8 +247,8 @@ class GridSpace(Space):
         Free cells that share an edge are connected; those that share only a corner are not, since
         the corner touches the two obstacles beside it.
         """
-        part = self._part(check_point('a', a, 2))
-        return part != 0 and part == self._part(check_point('b', b, 2))
+        component = self._component(check_point('a', a, 2))
+        return component != 0 and component == self._component(check_point('b', b, 2))
 
     def region_reachable(self, start: ArrayLike, goal: ArrayLike, radius: float) -> bool:
         """Say whether a path leads from ``start`` to within ``radius`` [m] of ``goal``."""
@@ -267,11 +267,11 @@ class GridSpace(Space):
 
         Free space is open, so a nearest point on the rim of a cell is taken ``margin`` inside.
         """
-        part = self._part(check_point('start', start, 2))
+        component = self._component(check_point('start', start, 2))
         target = self.frame.to_kernel(check_point('goal', goal, 2))
-        if part == 0:
+        if component == 0:
             return None
-        nearest, offset = nearest_in_part(self.data.labels, part, target, self.margin)
+        nearest, offset = nearest_in_component(self.data.labels, component, target, self.margin)
         return self.frame.from_kernel(nearest) if offset <= radius / self.scale else None
 
     def rough_path(self, start: Floats, goal: Floats) -> Floats | None:
@@ -289,7 +289,7 @@ class GridSpace(Space):
         """A point (k, 2) in each blocked part with free cells all around it, kernel frame."""
         return island_points(self.data.free_distance == 0)
 
-    def _part(self, point: Floats) -> int:
+    def _component(self, point: Floats) -> int:
         """Part of free space that holds a point (2,) [m]: 0 where it is not free."""
         return int(part_of(self.data, self.frame.to_kernel(point)))
 

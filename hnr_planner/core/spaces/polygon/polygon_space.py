@@ -99,17 +99,17 @@ class PolygonSpace(Space):
 
     def connected(self, a: ArrayLike, b: ArrayLike) -> bool:
         """Say whether a path joins two free points: whether they lie in the same polygon."""
-        part = self._part(a)
-        return part != 0 and part == self._part(b)
+        component = self._component(a)
+        return component != 0 and component == self._component(b)
 
     def region_reachable(self, start: ArrayLike, goal: ArrayLike, radius: float) -> bool:
         """Say whether the start's polygon comes nearer than ``radius`` to ``goal``."""
         from shapely import Point
 
-        part = self._part(start)
-        if part == 0:
+        component = self._component(start)
+        if component == 0:
             return False
-        distance = self._polygons[part - 1].distance(Point(check_point('goal', goal, 2)))
+        distance = self._polygons[component - 1].distance(Point(check_point('goal', goal, 2)))
         return bool(distance < check_number('radius', radius, 0.0))
 
     def clearance(self, points: ArrayLike) -> Floats:
@@ -117,7 +117,7 @@ class PolygonSpace(Space):
         points = np.atleast_2d(check_points('points', points, 2))
         return distance_to_edges(self.data.edges, points) * self.contains(points)
 
-    def _part(self, point: ArrayLike) -> int:
+    def _component(self, point: ArrayLike) -> int:
         """Return the number of the polygon that holds a point (2,), from 1; 0 for none."""
         return int(part_of(self.data, check_point('point', point, 2)))
 

@@ -33,7 +33,7 @@ from numpy.typing import NDArray
 LEAST = float(np.finfo(np.float64).tiny)
 
 
-class PolytopePlace(NamedTuple):
+class PolytopeCache(NamedTuple):
     """
     Where a chain stands in a polytope.
 
@@ -73,7 +73,7 @@ def _open_cache(polytope, x, memory):
     first, m = len(x), len(polytope.offsets)
     second, third = first + m, first + 2 * m
     hurries = memory[third:]
-    return PolytopePlace(
+    return PolytopeCache(
         x=x,
         y=memory[:first],
         slacks=memory[first:second],
