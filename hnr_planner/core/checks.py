@@ -10,6 +10,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 Floats = NDArray[np.float64]
+#: What ``check_seed`` accepts.
+Seed = int | np.random.SeedSequence | np.random.Generator | np.random.BitGenerator | None
 
 
 def check_numbers(name: str, values: ArrayLike, error: type[HnrError] = RequestError) -> Floats:
@@ -98,6 +100,6 @@ def check_choice(name: str, value: Any, choices: tuple[str, ...]) -> str:
     return str(value)
 
 
-def check_seed(seed: Any) -> int:
+def check_seed(seed: Seed) -> int:
     """Return ``seed`` as an int of at least 0, a fresh one for None, or raise RequestError."""
     return secrets.randbelow(2**31) if seed is None else check_count('seed', seed, 0)

@@ -14,7 +14,7 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
-from hnr_planner.core.checks import check_count, check_points, check_seed, Floats
+from hnr_planner.core.checks import check_count, check_points, check_seed, Floats, Seed
 from hnr_planner.core.errors import RequestError, StuckError
 from hnr_planner.core.kernels.borrowed import borrowed
 from hnr_planner.core.kernels.kernel import kernel
@@ -164,7 +164,7 @@ class Chains:
 
 
 def begin_chains(
-    space: Space, start: ArrayLike, *, n_chains: int = 1, seed: int | None = None
+    space: Space, start: ArrayLike, *, n_chains: int = 1, seed: Seed = None
 ) -> Chains:
     """
     Make chains at their start, each with a random stream of its own.
@@ -177,8 +177,9 @@ def begin_chains(
         One free point for all chains, or one for each chain; ``n_chains`` is optional then.
     n_chains : int
         Number of independent chains.
-    seed : int, optional
-        Fresh when left out. The first chains are the same however many there are.
+    seed : int, numpy.random.SeedSequence, numpy.random.Generator or None
+        Fresh when left out. A generator is advanced. The first chains are the same however many
+        there are.
 
     Raises
     ------

@@ -11,8 +11,8 @@ import math
 from typing import NamedTuple
 
 from hnr_planner.core.cancellation import Event, in_parts
-from hnr_planner.core.checks import check_count, check_seed, Floats
-from hnr_planner.core.errors import SpaceError
+from hnr_planner.core.checks import check_count, check_seed, Floats, Seed
+from hnr_planner.core.errors import RequestError, SpaceError
 from hnr_planner.core.kernels.streams import Stream, stream, uniform
 from hnr_planner.core.sampling.chains import new_chain, run_chain
 from hnr_planner.core.sampling.walks import make_walk, Walk
@@ -60,7 +60,7 @@ def sample_free_space(
     walk: str | Walk = 'hit_and_run',
     n_chains: int = 1,
     thin: int = 1,
-    seed: int | None = None,
+    seed: Seed = None,
     cancel: Event | None = None,
 ) -> FreeSpaceDraws:
     """
@@ -82,15 +82,15 @@ def sample_free_space(
         Independent repetitions; each runs in its own thread with its own random streams.
     thin : int
         Steps between consecutive draws in one component.
-    seed : int, optional
-        Fresh when left out.
+    seed : int, numpy.random.SeedSequence, numpy.random.Generator or None
+        Fresh when left out. A generator is advanced, so that the next call gives other draws.
     cancel : Event, optional
         Ends the work when it is set.
 
     Raises
     ------
     RequestError
-        When an argument is malformed.
+        When an argument is malformed, or the space is not a grid.
     SpaceError
         When no cell is free.
     Cancelled
@@ -99,6 +99,11 @@ def sample_free_space(
         When a chain has not moved for 1000 steps.
 
     """
+    if not isinstance(space, GridSpace):
+        raise RequestError(
+            f'sample_free_space needs a GridSpace, whose components are known, got a '
+            f"{type(space).__name__}: sample(space, start, ...) draws from the start's component"
+        )
     n_draws = check_count('n_draws', n_draws, 1)
     n_chains = check_count('n_chains', n_chains, 1)
     thin = check_count('thin', thin, 1)

@@ -1,6 +1,6 @@
 """Uniform points of a space, by chains of a random walk."""
 
-from hnr_planner.core.checks import check_count, Floats
+from hnr_planner.core.checks import check_count, Floats, Seed
 from hnr_planner.core.sampling.chains import begin_chains, walk_on
 from hnr_planner.core.sampling.walks import Walk
 from hnr_planner.core.spaces.space import Space
@@ -16,7 +16,7 @@ def sample(
     n_chains: int = 1,
     burn_in: int = 0,
     thin: int = 1,
-    seed: int | None = None,
+    seed: Seed = None,
 ) -> Floats:
     """
     Draw points from a random walk whose limit is the uniform law on the start's component.
@@ -41,8 +41,8 @@ def sample(
         Steps at the beginning of each chain that are not kept.
     thin : int
         Steps for each point kept; the last one is kept.
-    seed : int, optional
-        Fresh when left out.
+    seed : int, numpy.random.SeedSequence, numpy.random.Generator or None
+        Fresh when left out. A generator is advanced, so that the next call gives other draws.
 
     Returns
     -------

@@ -6,11 +6,14 @@ from test.laws import maps
 import threading
 
 from hnr_planner.core import (
+    BoxSpace,
     Cancelled,
+    DifferenceSpace,
     FreeSpaceDraws,
     GridSpace,
     RequestError,
     sample_free_space,
+    Space,
     SpaceError,
     WALKS,
 )
@@ -176,6 +179,26 @@ def test_cancelled_work_ends_soon() -> None:
     threading.Timer(0.2, cancel.set).start()
     with pytest.raises(Cancelled):  # 10^12 steps otherwise
         sample_free_space(SPACE, 1_000_000, thin=1_000_000, cancel=cancel)
+
+
+def test_a_sequence_or_a_generator_is_a_seed() -> None:
+    for seed in (np.random.SeedSequence(7), np.random.default_rng(7)):
+        draws = sample_free_space(SPACE, 20, seed=seed)
+        again = sample_free_space(SPACE, 20, seed=draws.seed)
+        np.testing.assert_array_equal(again.points, draws.points)
+
+
+@pytest.mark.parametrize(
+    'space',
+    [
+        BoxSpace([0.0], [1.0]),
+        DifferenceSpace(BoxSpace([0] * 3, [1] * 3), BoxSpace([0.4, -1, -1], [0.6, 2, 2])),
+    ],
+)
+def test_a_space_that_is_no_grid_is_refused(space: Space) -> None:
+    name = type(space).__name__
+    with pytest.raises(RequestError, match=f'needs a GridSpace, .* got a {name}: sample'):
+        sample_free_space(space, 100, seed=1)
 
 
 def test_nothing_free_is_refused() -> None:

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+import math
 
 from hnr_planner.core.checks import Floats
 from hnr_planner.core.errors import RequestError
@@ -14,6 +15,7 @@ from hnr_planner.core.sampling.diagnostics.effective import (
     time_within,
 )
 from hnr_planner.core.sampling.diagnostics.holding import frozen, longest_holding_time, repeats
+from hnr_planner.core.sampling.diagnostics.separation import compare_pairs, Separation
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -51,6 +53,9 @@ class Diagnosis:
     cells_missed : (n_chains,) int
         Number of cells, of up to 16 with equal numbers of all draws, that a chain never entered
         although it made enough draws.
+    separated : (n_chains, n_chains) bool
+        Whether the draws of two chains can be told apart by their positions, so that the chains
+        keep to different regions, however finely interleaved.
     reasons : tuple of str
         Reasons why the chains have not converged; empty where none was found.
 
@@ -64,6 +69,7 @@ class Diagnosis:
     repeats: NDArray[np.int64]
     longest_holding_time: NDArray[np.int64]
     cells_missed: NDArray[np.int64]
+    separated: NDArray[np.bool_]
     reasons: tuple[str, ...]
 
     @property
@@ -87,8 +93,9 @@ def diagnose(draws: ArrayLike) -> Diagnosis:
     Compute convergence statistics of draws, and judge whether their chains have converged.
 
     A stuck chain is never called converged, whatever its R-hat (chains that do not move agree
-    perfectly). No diagnostic detects a region that no chain has entered: chains that all start at
-    one point show how fast they leave it, and no more.
+    perfectly), nor are chains that keep to different regions. No diagnostic detects a region that
+    no chain has entered: chains that all start at one point show how fast they leave it, and no
+    more. ``separation`` states what pairs of chains cannot show.
 
     Parameters
     ----------
@@ -105,7 +112,9 @@ def diagnose(draws: ArrayLike) -> Diagnosis:
     coordinates = np.ascontiguousarray(np.moveaxis(draws, 2, 0))
     sizes = np.array([ess_mean(chains) for chains in coordinates])
     spread = draws.std(axis=(0, 1), ddof=1)
-    missed, n_cells = count_missed_cells(draws, max(map(time_within, coordinates)))
+    time = max(map(time_within, coordinates))
+    missed, n_cells = count_missed_cells(draws, time)
+    pairs = compare_pairs(draws, time)
     statistics = Diagnosis(
         r_hat=np.array([r_hat(chains) for chains in coordinates]),
         ess_bulk=np.array([ess_bulk(chains) for chains in coordinates]),
@@ -115,9 +124,14 @@ def diagnose(draws: ArrayLike) -> Diagnosis:
         repeats=repeats(draws),
         longest_holding_time=longest_holding_time(draws),
         cells_missed=missed,
+        separated=pairs.separated,
         reasons=(),
     )
-    reasons = *_signs_of_sticking(draws, statistics, n_cells), *_signs_of_disagreement(statistics)
+    reasons = (
+        *_signs_of_sticking(draws, statistics, n_cells),
+        *_signs_of_separation(pairs),
+        *_signs_of_disagreement(statistics),
+    )
     return replace(statistics, reasons=reasons)
 
 
@@ -157,6 +171,20 @@ def _signs_of_sticking(draws: Floats, statistics: Diagnosis, n_cells: int) -> It
     missed = statistics.cells_missed
     for chain in np.flatnonzero((missed > 0) & moving):
         yield f'chain {chain} never entered {missed[chain]} of {n_cells} cells of equal weight'
+
+
+def _signs_of_separation(pairs: Separation) -> Iterator[str]:
+    """Yield the reason that concerns pairs of chains, with the pair that differs most."""
+    n_separated = int(np.triu(pairs.separated).sum())
+    if n_separated == 0:
+        return
+    accuracy = np.where(pairs.separated, pairs.accuracy, 0.0)
+    first, second = np.unravel_index(accuracy.argmax(), accuracy.shape)
+    yield (
+        f'chains {first} and {second} keep to different regions: {accuracy.max():.0%} of their '
+        f'draws lie nearer to draws of their own chain ({n_separated} of '
+        f'{math.comb(len(accuracy), 2)} pairs of chains differ)'
+    )
 
 
 def _signs_of_disagreement(statistics: Diagnosis) -> Iterator[str]:

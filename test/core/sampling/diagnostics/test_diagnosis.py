@@ -16,6 +16,7 @@ def test_chains_that_mix_converge():
     assert found.message.startswith('converged: R-hat at most 1.00')
     assert found.cells_missed.tolist() == found.repeats.tolist() == [0, 0, 0, 0]
     assert found.longest_holding_time.tolist() == [1, 1, 1, 1]
+    assert not found.separated.any()
     assert found.r_hat.shape == found.ess_tail.shape == found.mcse_mean.shape == (3,)
 
 
@@ -111,7 +112,8 @@ def test_r_hat_alone_and_effective_sizes_alone_would_have_passed_some():
     hidden = diagnose(opposite_quarters_each(DRAWS))
     assert hidden.r_hat.max() < 1.01
     assert min(hidden.ess_bulk.min(), hidden.ess_tail.min()) > 400
-    assert len(hidden.reasons) == 4
+    assert len(hidden.reasons) == 5
+    assert hidden.separated.sum() == 8
 
 
 def test_chains_that_mix_are_hardly_ever_called_confined():
