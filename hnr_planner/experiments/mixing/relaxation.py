@@ -21,7 +21,7 @@ from matplotlib.axes import Axes
 import numpy as np
 
 #: Refinement of the lattice along each axis, and number of lines, for the computed flow.
-FINER, N_LINES = 4, 1 << 18
+REFINEMENT, N_LINES = 4, 1 << 18
 #: Draws of each chain in which moves are counted; lag of a move as a fraction of the computed
 #: time, and its minimum [steps]: the error made by cells falls with the lag.
 N_DRAWS, LAG, MIN_LAG = 1000, 0.5, 8
@@ -46,7 +46,7 @@ def computed(name: str) -> Computed:
     """Compute conductance and relaxation time of a set from the flow of Hit-and-Run."""
     mixing_set = planar_sets()[name]
     rows, columns = mixing_set.lattice
-    flow = cell_flow(mixing_set.space, (FINER * rows, FINER * columns), N_LINES)
+    flow = cell_flow(mixing_set.space, (REFINEMENT * rows, REFINEMENT * columns), N_LINES)
     return Computed(best_cut(flow).conductance, flow.relaxation_time)
 
 
