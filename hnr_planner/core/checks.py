@@ -10,6 +10,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 Floats = NDArray[np.float64]
+#: What ``check_seed`` accepts.
+Seed = int | np.random.SeedSequence | np.random.Generator | np.random.BitGenerator | None
 
 #: Seeds drawn from a generator or a seed sequence are below this.
 SEED_MAX = 2**63
@@ -101,7 +103,7 @@ def check_choice(name: str, value: Any, choices: tuple[str, ...]) -> str:
     return str(value)
 
 
-def check_seed(seed: Any) -> int:
+def check_seed(seed: Seed) -> int:
     """
     Return a seed as an int of at least 0, which results name and which repeats them.
 

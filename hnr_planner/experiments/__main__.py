@@ -1,18 +1,18 @@
 """
-Bring the pages of the experiments up to date with their numbers.
+Update the tables of the experiments' pages.
 
-``python -m hnr_planner.experiments`` in the project's folder gives the tables of ``docs/NAME.md``
-the rows of ``docs/figures/NAME.md``.
+``python -m hnr_planner.experiments``, run in the project's folder, replaces the rows of the tables
+in ``docs/NAME.md`` by those of ``docs/figures/NAME.md``.
 """
 
 from pathlib import Path
 
-from hnr_planner.experiments import NAMES
 from hnr_planner.experiments.pages import refresh
+from hnr_planner.experiments.registry import NAMES
 
 
 def main(docs: Path) -> None:
-    """Refresh every page."""
+    """Update the page of every experiment in the folder ``docs``."""
     for name in NAMES:
         refresh(docs, name)
 

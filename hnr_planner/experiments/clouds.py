@@ -1,9 +1,9 @@
 """
-What the sample clouds of Hit-and-Run and RRT look like, as numbers (paper, section "Planning").
+Measures of the samples of Hit-and-Run and RRT in the spiral (paper, section "Planning").
 
-Of the samples of one run on the spiral the paper says that RRT covers it more evenly and
-Hit-and-Run speeds along straight halls; that RRT slows down towards the end, since the rest of its
-tree absorbs most samples; and that RRT wastes samples along the boundaries.
+The paper claims that RRT covers the spiral more evenly and that Hit-and-Run moves fast along
+straight corridors; that RRT slows down towards the end, since the rest of its tree absorbs most
+samples; and that RRT wastes samples along the boundaries.
 """
 
 from functools import cache
@@ -15,6 +15,7 @@ from hnr_planner.experiments import spiral
 from hnr_planner.experiments.experiment import Experiment
 from hnr_planner.experiments.figures import draw_profile, legend, LOOKS, new_figure, style
 from hnr_planner.experiments.grid_search import potential
+from hnr_planner.experiments.registry import EXPERIMENTS
 from hnr_planner.experiments.results import markdown, Results
 from matplotlib.figure import Figure
 import numpy as np
@@ -23,24 +24,24 @@ from numpy.typing import NDArray
 WIDTHS = (0.8, 1.2, 1.6, 2.0)
 SHOWN_WIDTH = 1.2
 PLANNERS = ('hit_and_run', 'rrt')
-#: Independent uniform points, to compare with: what chance alone does to each measure.
+#: Independent uniform points as a reference: the value of each measure by chance alone.
 UNIFORM = 'uniform'
-#: Parts of the way from start to goal, and slices of the corridor of equal area across it.
+#: Equal sections of the way from start to goal, and slices of equal area across the corridor.
 N_PARTS, N_SLICES = 20, 40
-#: Points of a run that its evenness is measured on; chance depends on their number.
+#: Points of a run that its evenness is measured on: its value by chance depends on their number.
 N_EVEN = 400
-#: Layers of the corridor from wall to middle, of equal width; the first one is near the wall.
+#: Layers of equal width from the wall to the middle of the corridor; the first is at the wall.
 N_LAYERS = 10
-#: A point this near to a wall lies on it [m].
+#: Points nearer to a wall than this count as points on it [m].
 ON_WALL = 1e-6
-#: Columns of the results: samples until each part of the way, density in each slice and layer.
+#: Columns of the results: samples until each section of the way, density by slice and layer.
 ARRIVALS = [f'arrival_{k + 1}' for k in range(N_PARTS)]
 SLICES = [f'slice_{k}' for k in range(N_SLICES)]
 LAYERS = [f'layer_{k}' for k in range(N_LAYERS)]
-#: Columns that only a search has.
-OF_SEARCH = ['transitions', 'rejected', 'step', *ARRIVALS]
-#: What the table tells, and the columns that it tells it from.
-TOLD = {
+#: Columns that independent points do not have.
+SEARCH_COLUMNS = ['transitions', 'rejected', 'step', *ARRIVALS]
+#: Headers of the table, and the column of each.
+TABLE_COLUMNS = {
     'transitions': 'transitions',
     'samples to half the way': ARRIVALS[N_PARTS // 2 - 1],
     'to the goal': ARRIVALS[-1],
@@ -62,11 +63,21 @@ class Case(NamedTuple):
 
 class Straightened(NamedTuple):
     """
-    The spiral, straightened.
+    The spiral with coordinates along and across its corridor.
 
-    ``width`` is that of the corridor [m]. ``way`` (rows * columns,) is the distance of each cell
-    from the start along the corridor, as a part of the goal's; ``edges`` (N_SLICES + 1,) are those
-    of the slices of equal area; ``layers`` (N_LAYERS,) is the part of the area in each layer.
+    Attributes
+    ----------
+    space : GridSpace
+        The spiral.
+    width : float
+        Width of the corridor [m].
+    way : (rows * columns,)
+        Distance of each cell from the start along the corridor, as a fraction of the goal's.
+    edges : (N_SLICES + 1,)
+        Edges of the slices of equal area, as fractions of the way.
+    layers : (N_LAYERS,)
+        Fraction of the area in each layer.
+
     """
 
     space: GridSpace
@@ -77,16 +88,17 @@ class Straightened(NamedTuple):
 
 
 def cases() -> list[Case]:
-    """List every width with every planner, and the uniform points."""
+    """Return every width with every planner and with the uniform points."""
     return [Case(width, name) for width in WIDTHS for name in (*PLANNERS, UNIFORM)]
 
 
 def run(case: Case, seed: int) -> dict[str, float]:
-    """Search once, and measure the samples."""
+    """Search once and return the measures of its samples."""
     corridor = straightened(case.width)
     rng = np.random.default_rng(seed)
     if case.algorithm == UNIFORM:
-        points, searched = _uniform_points(corridor.space, rng), dict.fromkeys(OF_SEARCH, np.nan)
+        points = _uniform_points(corridor.space, rng)
+        searched = dict.fromkeys(SEARCH_COLUMNS, np.nan)
     else:
         search = spiral.Case(case.width, case.width, case.algorithm, 'region')
         result = spiral.search(search, seed)
@@ -96,7 +108,7 @@ def run(case: Case, seed: int) -> dict[str, float]:
 
 @cache
 def straightened(width: float) -> Straightened:
-    """Measure a spiral."""
+    """Build the spiral of a width [m] and compute its coordinates."""
     made, space = spiral.built(width, width)
     from_start = potential(space.data, space.to_kernel(np.array(made.start)))
     way = from_start / from_start[_cells(space, np.array([made.goal]))[0]]
@@ -112,13 +124,13 @@ def straightened(width: float) -> Straightened:
 
 
 def _cells(space: GridSpace, points: NDArray) -> NDArray[np.int64]:
-    """Return the number (k,) of the cell of each point (k, 2), as ``potential`` counts them."""
+    """Return the index (k,) of the cell of each point (k, 2), row-major as in ``potential``."""
     columns, rows = np.floor(space.to_kernel(points)).astype(int).T
     return rows * space.data.free_distance.shape[1] + columns
 
 
 def _uniform_points(space: GridSpace, rng: np.random.Generator) -> NDArray[np.float64]:
-    """Draw independent uniform points."""
+    """Draw ``4 * N_EVEN`` independent uniform points (k, 2) of the free space."""
     rows, columns = np.nonzero(~space.blocked)
     k = rng.integers(len(rows), size=4 * N_EVEN)
     shift = rng.uniform(-0.5, 0.5, (2, len(k)))
@@ -126,7 +138,7 @@ def _uniform_points(space: GridSpace, rng: np.random.Generator) -> NDArray[np.fl
 
 
 def _searched(corridor: Straightened, result: PlanResult) -> dict[str, float]:
-    """Return what only a search has: its transitions, its steps, and how soon it gets how far."""
+    """Return the measures of the search itself: transitions, mean step, and arrivals."""
     way = _way(corridor, result.samples)
     children = np.flatnonzero(result.parents >= 0)
     steps = result.samples[children] - result.samples[result.parents[children]]
@@ -139,7 +151,7 @@ def _searched(corridor: Straightened, result: PlanResult) -> dict[str, float]:
 
 
 def _arrivals(way: NDArray) -> NDArray[np.float64]:
-    """Return the number of samples before the first one each part of the way from the start."""
+    """Return the number of samples (N_PARTS,) before the first one in each section of the way."""
     farthest = np.maximum.accumulate(way)
     parts = np.linspace(0.0, 1.0, N_PARTS + 1)[1:]
     # The search ends in the goal's region, which begins before the goal.
@@ -147,7 +159,7 @@ def _arrivals(way: NDArray) -> NDArray[np.float64]:
 
 
 def _way(corridor: Straightened, points: NDArray) -> NDArray[np.float64]:
-    """Return how far along the corridor points are; one on a wall counts with a cell beside it."""
+    """Return the fraction of the way (k,) of points; a point on a wall takes a cell beside it."""
     way = corridor.way[_cells(corridor.space, points)]
     if not np.isfinite(way).all():
         for offset in (-1e-6, 1e-6):
@@ -162,26 +174,26 @@ def _evenness(
     """
     Return the density of the samples in each slice, and ``uneven``.
 
-    That is the total variation distance between the slices of ``N_EVEN`` of the samples and equal
-    ones: 0 is as even as can be. It is nan for a run of fewer samples.
+    ``uneven`` is the total variation distance between the shares of ``N_EVEN`` samples in the
+    slices and equal shares: 0 is perfectly even. It is nan for a run of fewer samples.
     """
     way = _way(corridor, points)
     uneven = np.nan
     if len(way) >= N_EVEN:
-        some = rng.choice(way, N_EVEN, replace=False)
-        uneven = 0.5 * float(np.abs(_shares(some, corridor.edges) - 1.0 / N_SLICES).sum())
+        chosen = rng.choice(way, N_EVEN, replace=False)
+        uneven = 0.5 * float(np.abs(_shares(chosen, corridor.edges) - 1.0 / N_SLICES).sum())
     densities = (_shares(way, corridor.edges) * N_SLICES).tolist()
     return {'uneven': uneven, **dict(zip(SLICES, densities, strict=True))}
 
 
 def _shares(way: NDArray, edges: NDArray) -> NDArray[np.float64]:
-    """Return the part of points in each slice."""
+    """Return the fraction of points in each slice (N_SLICES,)."""
     counts = np.histogram(np.clip(way, edges[0], edges[-1]), edges)[0]
     return counts / len(way)
 
 
 def _nearness(corridor: Straightened, points: NDArray) -> dict[str, float]:
-    """Return the part of the samples on a wall, and their density in each layer."""
+    """Return the fraction of the samples on a wall, and their density in each layer."""
     densities = _in_layers(corridor.space, corridor.width, points) / corridor.layers
     return {
         'on_wall': float((corridor.space.clearance(points) < ON_WALL).mean()),
@@ -190,7 +202,7 @@ def _nearness(corridor: Straightened, points: NDArray) -> dict[str, float]:
 
 
 def _in_layers(space: GridSpace, width: float, points: NDArray) -> NDArray[np.float64]:
-    """Return the part of points in each layer; corners of the corridor count as its middle."""
+    """Return the fraction of points in each layer; corners of the corridor count as middle."""
     depth = space.clearance(points) / (width / 2.0)
     layers = np.minimum((depth * N_LAYERS).astype(int), N_LAYERS - 1)
     return np.bincount(layers, minlength=N_LAYERS) / len(points)
@@ -219,28 +231,27 @@ def figure(results: Results) -> Figure:
 
 
 def tables(results: Results) -> str:
-    """Return the measures for every width."""
+    """Return a table with the measures of every width and planner."""
     derived = {
         'last_tenth': results[ARRIVALS[-1]] - results[ARRIVALS[-1 - N_PARTS // 10]],
         'percent_on_wall': 100.0 * results['on_wall'],
     }
     results = Results({**results.columns, **derived})
     rows = [
-        [_words(case), *(results.of(case).mean(column) for column in TOLD.values())]
+        [_label(case), *(results.of(case).mean(column) for column in TABLE_COLUMNS.values())]
         for case in cases()
     ]
-    return markdown(['width [m], points', *TOLD], rows)
+    return markdown(['width [m], points', *TABLE_COLUMNS], rows)
 
 
-def _words(case: Case) -> str:
+def _label(case: Case) -> str:
     uniform = case.algorithm == UNIFORM
     label = 'independent uniform points' if uniform else LOOKS[case.algorithm].label
     return f'{case.width}, {label}'
 
 
 EXPERIMENT = Experiment(
-    name='clouds',
-    about='The samples of a search through the spiral: how soon, how evenly, how near to walls.',
+    EXPERIMENTS['clouds'],
     runs=500,
     cases=cases,
     run=run,

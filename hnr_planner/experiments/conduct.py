@@ -1,4 +1,4 @@
-"""Conduct an experiment: run what is missing on all cores, then write figure and tables."""
+"""Conduct an experiment: compute missing rows on all cores, then write figure and tables."""
 
 from __future__ import annotations
 
@@ -24,28 +24,28 @@ def conduct(
     """
     Run every case of an experiment with the seeds 0 to ``runs - 1``.
 
-    The rows are computed by joblib, here by as many processes as there are cores; around a call,
-    ``joblib.parallel_config(backend='dask')`` and the like send them to a cluster instead. The
-    rows, and their order in the file, are the same however they were computed.
+    joblib computes the rows, by default in as many processes as there are cores; a call inside
+    ``joblib.parallel_config(backend='dask')`` sends them to a cluster. The rows and their order in
+    the file do not depend on the backend.
 
     Parameters
     ----------
     experiment : Experiment
-        What to run.
+        The experiment.
     runs : int
         Runs of every case, at least 1.
     folder : Path
-        Where NAME.csv, NAME.json (what the rows were made with), NAME.svg and NAME.md go. Rows
-        that are in NAME.csv already are kept.
+        Folder for NAME.csv, NAME.json (versions that the rows were computed with), NAME.svg and
+        NAME.md. Rows already in NAME.csv are kept.
     n_jobs : int
-        Rows computed at the same time, as joblib counts: -1 for one on each core.
+        Number of rows computed at the same time; -1 for one on each core.
     fresh : bool
-        Whether rows of before are thrown away.
+        Whether existing rows are discarded.
 
     Raises
     ------
     ResultsError
-        The rows that are there belong to other cases or to another core.
+        When the existing rows belong to other cases, or to another version of the core.
 
     """
     folder.mkdir(parents=True, exist_ok=True)
@@ -57,7 +57,7 @@ def conduct(
     figure = experiment.figure(results)
     sign(figure, signature)
     save(figure, folder / f'{experiment.name}.svg')
-    text = f'# {experiment.name}\n\n{experiment.about}\n\n{experiment.tables(results)}\n'
+    text = f'# {experiment.name}\n\n{experiment.entry.summary}\n\n{experiment.tables(results)}\n'
     (folder / f'{experiment.name}.md').write_text(f'{text}{signature}.\n', encoding='utf-8')
     return results
 
@@ -65,7 +65,7 @@ def conduct(
 def _rows(
     experiment: Experiment, file: ResultsFile, runs: int, n_jobs: int
 ) -> Iterator[tuple[object, int, dict[str, float]]]:
-    """Yield the missing rows in the order of the file, and show how far it is."""
+    """Yield the missing rows in the order of the file, with a progress bar."""
     done, missing = file.n_rows, file.tasks(runs)
     if not missing:
         return
@@ -80,7 +80,7 @@ def _rows(
 
 
 def _signature(experiment: Experiment, results: Results, made: dict[str, str]) -> str:
-    """Return what was run, in one line."""
+    """Return one line that names runs, seeds, command and versions."""
     return (
         f'{results.runs} runs of each, seeds 0 to {results.runs - 1}. python -m hnr_planner '
         f'experiment {experiment.name} --runs {results.runs}; hnr_planner {made["hnr_planner"]}, '

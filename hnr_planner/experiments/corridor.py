@@ -1,9 +1,9 @@
 """
 Transitions of Hit-and-Run and RRT under kinematics (paper, section "Kinematic Planning").
 
-The paper says: in a corridor with two turns, for a robot with bounded acceleration that the
-boundary stops, Hit-and-Run needs fewer transitions, by as much as a factor of three. It does not
-say what a transition is; here are both readings, and the integration steps beside them.
+The paper claims that Hit-and-Run needs fewer transitions, by as much as a factor of three, in a
+corridor with two turns, for a robot of bounded acceleration that the boundary stops. It does not
+define a transition: both readings are measured, and the integration steps besides.
 """
 
 from functools import cache
@@ -15,6 +15,7 @@ from hnr_planner.core.systems import DoubleIntegrator
 from hnr_planner.experiments.experiment import Experiment
 from hnr_planner.experiments.figures import draw_profile, legend, LOOKS, new_figure, style
 from hnr_planner.experiments.median_run import draw_run, median_run
+from hnr_planner.experiments.registry import EXPERIMENTS
 from hnr_planner.experiments.results import markdown, Results
 from hnr_planner.maps import Corridor, serpentine, zigzag
 from matplotlib.axes import Axes
@@ -27,9 +28,9 @@ WIDTHS = (1.0, 1.5, 2.0, 3.0)
 ROBOT = DoubleIntegrator(dim=2, max_acceleration=1.0, max_speed=3.0)
 TIME_STEP = 0.2
 ALGORITHMS = {'hit_and_run': 'kinodynamic_hit_and_run', 'rrt': 'kinodynamic_rrt'}
-#: A transition drives until the target is no longer getting nearer, or for one step.
+#: A transition drives until its distance to the target stops falling, or for one time step.
 TRANSITIONS = ('arrival', 'step')
-#: The paper's lower plots: one run at this width.
+#: Width of the run that is drawn, as in the paper's lower plots [m].
 SHOWN_WIDTH = 2.0
 LAYOUT: list[Any] = [
     ['serpentine'] * 2 + ['z'] * 2 + ['steps'] * 2,
@@ -38,7 +39,7 @@ LAYOUT: list[Any] = [
 
 
 class Case(NamedTuple):
-    """A corridor of a width [m], a planner, and what a transition is."""
+    """Shape and width [m] of the corridor, planner, and definition of a transition."""
 
     shape: str
     width: float
@@ -47,7 +48,7 @@ class Case(NamedTuple):
 
 
 def cases() -> list[Case]:
-    """List every search through every corridor."""
+    """Return every search through every corridor."""
     return [
         Case(shape, width, algorithm, transition)
         for shape in SHAPES
@@ -58,7 +59,7 @@ def cases() -> list[Case]:
 
 
 def run(case: Case, seed: int) -> dict[str, float]:
-    """Search once, and count."""
+    """Search once and return transitions, integration steps and duration [s]."""
     result = search(case, seed)
     return {
         'transitions': result.iterations,
@@ -68,7 +69,7 @@ def run(case: Case, seed: int) -> dict[str, float]:
 
 
 def search(case: Case, seed: int) -> TrajectoryResult:
-    """Search once, from rest; nothing cuts it and nothing shortens its motion."""
+    """Search once from rest, without time limit and without shortening."""
     made, space = built(case.shape, case.width)
     return plan_trajectory(
         space,
@@ -94,7 +95,7 @@ def built(shape: str, width: float) -> tuple[Corridor, GridSpace]:
 
 
 def figure(results: Results) -> Figure:
-    """Draw transitions and steps over the width, and the motion of one run of each planner."""
+    """Draw transitions and steps against the width, and the median run of each planner."""
     drawn = new_figure(10.0, 6.8)
     axes = drawn.subplot_mosaic(LAYOUT, height_ratios=(1.3, 1))
     for name, shape, column, title, y in (
@@ -118,16 +119,16 @@ def _draw_lines(axes: Axes, results: Results, shape: str, column: str) -> None:
     for algorithm in ALGORITHMS:
         for transition, line in zip(TRANSITIONS, ('-', '--'), strict=True):
             look = LOOKS[algorithm]
-            words = look.label if transition == 'arrival' else f'{look.label}, one step'
+            label = look.label if transition == 'arrival' else f'{look.label}, one step'
             here = [Case(shape, width, algorithm, transition) for width in WIDTHS]
             means = [results.of(case).mean(column) for case in here]
-            draw_profile(axes, WIDTHS, means, look, label=words, line=line)
+            draw_profile(axes, WIDTHS, means, look, label=label, line=line)
     axes.set_xticks(WIDTHS)
     axes.set_yscale('log')
 
 
 def tables(results: Results) -> str:
-    """Return the mean transitions and integration steps of every search."""
+    """Return a table of the mean transitions and integration steps of every search."""
     columns = [(column, name) for column in ('transitions', 'steps') for name in ALGORITHMS]
     header = ['corridor, width [m], transition']
     header += [f'{LOOKS[name].label}: {column}' for column, name in columns]
@@ -147,8 +148,7 @@ def tables(results: Results) -> str:
 
 
 EXPERIMENT = Experiment(
-    name='corridor',
-    about='Transitions and integration steps through a corridor with two turns, under kinematics.',
+    EXPERIMENTS['corridor'],
     runs=500,
     cases=cases,
     run=run,

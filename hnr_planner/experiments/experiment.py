@@ -1,9 +1,10 @@
-"""What an experiment is."""
+"""The parts of an experiment: cases, measurement, figure and tables."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from hnr_planner.experiments.registry import ExperimentEntry
 from hnr_planner.experiments.results import Results
 from matplotlib.figure import Figure
 
@@ -11,33 +12,36 @@ from matplotlib.figure import Figure
 @dataclass(frozen=True)
 class Experiment:
     """
-    A claim, and how it is measured.
+    An experiment: the cases of a claim of the paper, and how they are measured and shown.
 
     Attributes
     ----------
-    name : str
-        Name of its module, its files and its command.
-    about : str
-        What it measures, in one line.
+    entry : ExperimentEntry
+        Its line in the registry: name, module and summary.
     runs : int
-        Runs of every case that ``docs/`` has.
+        Number of runs of every case in ``docs/``.
     cases : callable
-        Returns the cases: NamedTuples of texts and numbers, all of one type. Their fields are
+        Returns the cases: NamedTuples of strings and numbers, all of one type. Their fields are
         columns of the results.
     run : callable
-        ``run(case, seed)`` measures one case: a pure function, defined at the top of its module
-        so that other processes find it. It returns further columns, the same for every case.
+        ``run(case, seed)`` measures one case and returns further columns, the same for every
+        case. It is a pure function at the top level of its module, so that other processes can
+        import it.
     figure : callable
         Draws the results.
     tables : callable
-        Returns the numbers as Markdown.
+        Returns the tables of the results as Markdown.
 
     """
 
-    name: str
-    about: str
+    entry: ExperimentEntry
     runs: int
     cases: Callable[[], Sequence[Any]]
     run: Callable[[Any, int], Mapping[str, float]]
     figure: Callable[[Results], Figure]
     tables: Callable[[Results], str]
+
+    @property
+    def name(self) -> str:
+        """Name of its command, its page and its files."""
+        return self.entry.name

@@ -1,9 +1,9 @@
 """
-How the figures of the experiments look.
+The common style of the experiments' figures.
 
-Every algorithm has one colour, one mark and one name in all of them. People with any kind of
-colour vision can tell the colours apart; the marks still tell when a figure is printed in grey.
-Lines are means, the bands around them their 95 % intervals.
+Every algorithm has the same colour, marker and name in all figures. The colours are distinct for
+people with any kind of colour vision, and the markers are distinct in greyscale. Lines are means,
+the bands around them 95 % intervals.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from numpy.typing import ArrayLike, NDArray
 
 
 class Look(NamedTuple):
-    """How an algorithm is shown."""
+    """Label, colour and matplotlib marker of an algorithm."""
 
     label: str
     colour: str
@@ -37,20 +37,20 @@ LOOKS = {
     'a_star': Look('A*', '#CC79A7', 'D'),
     'wavefront': Look('wavefront (as NavFn)', '#E69F00', 'v'),
 }
-Place = Literal['best', 'upper left', 'upper right', 'lower left', 'lower right']
+Location = Literal['best', 'upper left', 'upper right', 'lower left', 'lower right']
+#: Opacity of the band of an interval.
 BAND = 0.18
-"""Opacity of an interval."""
+#: A line of this many points or more has smaller markers.
 MANY = 15
-"""From so many points on a line has smaller marks."""
 
 
 def new_figure(width: float, height: float) -> Figure:
-    """Return an empty figure of a size [in], made without pyplot."""
+    """Return an empty figure of this size [in], made without pyplot's global state."""
     return Figure(figsize=(width, height), layout='constrained')
 
 
 def style(axes: Axes, title: str, x: str, y: str) -> None:
-    """Give axes their words, and little ink besides."""
+    """Set title and axis labels, and reduce the frame to two thin spines and a grid."""
     draw_title(axes, title)
     axes.set_xlabel(x, color=INK, fontsize=9.5)
     axes.set_ylabel(y, color=INK, fontsize=9.5)
@@ -64,20 +64,20 @@ def style(axes: Axes, title: str, x: str, y: str) -> None:
 
 def draw_profile(
     axes: Axes,
-    places: ArrayLike,
+    x: ArrayLike,
     means: Sequence[Mean],
     look: Look,
     *,
     label: str | None = None,
     line: str = '-',
 ) -> None:
-    """Draw means over their places, with their intervals."""
+    """Draw means at ``x`` (k,) as a line, with their intervals as a band."""
     values, halves = np.array(means).T
     axes.fill_between(
-        places, values - halves, values + halves, color=look.colour, alpha=BAND, linewidth=0
+        x, values - halves, values + halves, color=look.colour, alpha=BAND, linewidth=0
     )
     axes.plot(
-        places,
+        x,
         values,
         line,
         color=look.colour,
@@ -95,7 +95,7 @@ def draw_bars(
     groups: Mapping[str, Sequence[Mean]],
     colours: Sequence[str],
 ) -> None:
-    """Draw a bar for each name in each group, the later groups paler and below."""
+    """Draw a bar for each name in each group; later groups are paler and below."""
     thickness = 0.8 / len(groups)
     at = np.arange(len(names))[::-1]
     for k, (group, means) in enumerate(groups.items()):
@@ -113,22 +113,22 @@ def draw_bars(
 
 
 def _paler(colour: str, times: int) -> NDArray[np.float64]:
-    """Return a colour with so many times more than half of it taken by white."""
+    """Return an RGB colour mixed with 55 % white, this many times."""
     return 1.0 - 0.45**times * (1.0 - np.array(to_rgb(colour)))
 
 
-def legend(axes: Axes, place: Place = 'best') -> None:
-    """Add the legend of axes at a place, as matplotlib calls it."""
-    axes.legend(loc=place, frameon=False, fontsize=9, labelcolor=INK)
+def legend(axes: Axes, location: Location = 'best') -> None:
+    """Add a legend at a location that matplotlib names."""
+    axes.legend(loc=location, frameon=False, fontsize=9, labelcolor=INK)
 
 
 def sign(figure: Figure, text: str) -> None:
-    """Say at the foot of a figure what was run."""
+    """Print what was run at the foot of a figure."""
     figure.supxlabel(text, x=0.01, ha='left', fontsize=7.5, color=FAINT_INK)
 
 
 def save(figure: Figure, file: Path) -> None:
-    """Write a figure, to the byte the same for the same results; its words stay text."""
+    """Write a figure: the same bytes for the same results, and text as text."""
     with rc_context({'svg.hashsalt': 'hnr_planner', 'svg.fonttype': 'none'}):
         figure.savefig(
             file, dpi=200, facecolor='white', metadata={'Date': None}, bbox_inches='tight'

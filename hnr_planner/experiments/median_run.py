@@ -1,4 +1,4 @@
-"""The run that stands for all: the one whose number of transitions is the median."""
+"""The median run of a case, by its number of transitions, to be drawn in a figure."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ DOT = 0.05
 def median_run(
     results: Results, case: Any, search: Callable[[Any, int], SearchResult]
 ) -> SearchResult:
-    """Search again as the median run of a case did."""
+    """Repeat the search of the run with the median number of transitions of a case."""
     runs = results.of(case)
     middle = np.argsort(runs['transitions'], kind='stable')[len(runs) // 2]
     return search(case, int(runs['seed'][middle]))
 
 
 def draw_run(axes: Axes, corridor: Corridor, run: SearchResult, name: str) -> None:
-    """Draw the samples of a run through a corridor, its ends and the goal's region."""
+    """Draw the samples of a run through a corridor, start, goal and the goal's region."""
     draw_map(axes, corridor.occupancy)
     for image in axes.images:
         image.set_interpolation('none')  # the cells themselves: sharp at any size, few bytes

@@ -1,9 +1,9 @@
 """
-The tables in the pages of ``docs/``: rows of those that an experiment writes.
+Update the tables in the pages of ``docs/`` from the tables that the experiments write.
 
-A page shows some rows of ``docs/figures/NAME.md``. A table is known by its header and a row by its
-first cell, so that the numbers of a page follow those of a new run by themselves; the sentences
-around them do not.
+A page shows some rows of ``docs/figures/NAME.md``. A table is identified by its header and a row
+by its first cell, so the numbers of a page can be updated after a new run. The text around the
+tables is written by hand.
 """
 
 from __future__ import annotations
@@ -13,15 +13,16 @@ import re
 
 from hnr_planner.core.errors import HnrError
 
+#: Consecutive lines of a Markdown table.
 TABLE = re.compile(r'(?:^\|.*\n)+', re.MULTILINE)
 
 
 class PageError(HnrError, ValueError):
-    """A page shows a row that its experiment did not write."""
+    """Error: a page shows a row that its experiment did not write."""
 
 
 def refresh(docs: Path, name: str) -> None:
-    """Bring the page of an experiment up to date; PageError says which row is not there."""
+    """Update the page of an experiment in place; raise PageError that names a missing row."""
     page, numbers = docs / f'{name}.md', docs / 'figures' / f'{name}.md'
     try:
         text = refreshed(page.read_text(encoding='utf-8'), numbers.read_text(encoding='utf-8'))
@@ -32,17 +33,17 @@ def refresh(docs: Path, name: str) -> None:
 
 def refreshed(page: str, numbers: str) -> str:
     """
-    Return a page with the rows as the numbers have them now.
+    Return a page whose rows are replaced by those of ``numbers``.
 
     Parameters
     ----------
     page, numbers : str
-        Markdown. A table of the page whose header no table of the numbers has stays as it is.
+        Markdown. Tables of the page with a header that ``numbers`` does not have stay unchanged.
 
     Raises
     ------
     PageError
-        A table of the page has the header of one of the numbers, but a row that is not there.
+        When a table of the page has a row that the table of ``numbers`` does not have.
 
     """
     tables = {}

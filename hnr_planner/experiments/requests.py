@@ -1,4 +1,4 @@
-"""Requests on any map: starts and goals that are far from each other."""
+"""Random starts and goals on any map, far from each other."""
 
 from __future__ import annotations
 
@@ -6,18 +6,18 @@ from hnr_planner.core import GridSpace
 import numpy as np
 from numpy.typing import NDArray
 
-#: Least distance of start and goal, as a part of the diagonal of the box around the free space.
-LEAST_APART = 0.4
+#: Least distance of start and goal, as a fraction of the diagonal of the free space's bounds.
+MIN_DISTANCE = 0.4
 
 
 def far_pairs(space: GridSpace, n_pairs: int, seed: int) -> NDArray[np.float64]:
-    """Draw starts and goals (n_pairs, 2, 2) [m]: centres of cells of the largest part."""
+    """Draw starts and goals (n_pairs, 2, 2) [m]: cell centres in the largest component."""
     rng = np.random.default_rng(seed)
     rows, columns = np.nonzero(space.largest_component())
     diagonal = np.hypot(np.ptp(rows), np.ptp(columns))
     pairs: list[NDArray[np.float64]] = []
     while len(pairs) < n_pairs:
         k = rng.integers(len(rows), size=2)
-        if np.hypot(*(np.diff(rows[k]), np.diff(columns[k]))) >= LEAST_APART * diagonal:
+        if np.hypot(*(np.diff(rows[k]), np.diff(columns[k]))) >= MIN_DISTANCE * diagonal:
             pairs.append(space.cell_centres(rows[k], columns[k]))
     return np.array(pairs)

@@ -1,9 +1,9 @@
 """
 The results of an experiment: a CSV file that grows, and the table that is read from it.
 
-Row after row the file follows one endless list: every case with seed 0, every case with seed 1,
-and so on. So a run that broke goes on where the file ends, a longer run continues a shorter one,
-and whatever is there has seen all cases equally often.
+The rows of the file follow one endless list: every case with seed 0, every case with seed 1, and
+so on. So an interrupted run resumes where the file ends, a longer run continues a shorter one, and
+all cases have the same number of rows, give or take one.
 """
 
 from __future__ import annotations
@@ -26,17 +26,17 @@ from numpy.typing import NDArray
 
 
 class ResultsError(HnrError, ValueError):
-    """A file of results does not belong to this experiment."""
+    """Error: a file of results does not belong to this experiment."""
 
 
 class Mean(NamedTuple):
-    """A mean, and the half of its 95 % interval."""
+    """A mean and half the width of its 95 % interval."""
 
     value: float
     half: float
 
     def __str__(self) -> str:
-        """Return both, rounded to what the interval lets one say."""
+        """Return both, rounded to two significant digits of the interval."""
         if math.isnan(self.value):
             return '-'
         if not math.isfinite(self.half) or self.half == 0.0:
@@ -47,7 +47,7 @@ class Mean(NamedTuple):
 
 @dataclass(frozen=True)
 class Results:
-    """A table: every column an array, of numbers where all of it are numbers."""
+    """A table of columns (n_rows,): floats where all values are numbers, else strings."""
 
     columns: Mapping[str, NDArray[Any]]
 
@@ -60,14 +60,14 @@ class Results:
         return self.columns[column]
 
     def where(self, **values: object) -> Results:
-        """Return the rows with these values in the columns of these names."""
+        """Return the rows with the given values in the columns so named."""
         chosen = np.ones(len(self), dtype=bool)
         for name, value in values.items():
             chosen &= self[name] == value
         return self.rows(chosen)
 
     def rows(self, chosen: NDArray[np.bool_]) -> Results:
-        """Return the chosen rows."""
+        """Return the rows chosen by a mask (n_rows,)."""
         return Results({name: column[chosen] for name, column in self.columns.items()})
 
     def of(self, case: Any) -> Results:
@@ -75,11 +75,11 @@ class Results:
         return self.where(**case._asdict())
 
     def distinct(self, column: str) -> list[Any]:
-        """Return the values of a column, each once, in the order of their first row."""
+        """Return the distinct values of a column, in the order of their first row."""
         return list(dict.fromkeys(self[column].tolist()))
 
     def mean(self, column: str) -> Mean:
-        """Return the mean of a column with its normal 95 % interval; nan is left out."""
+        """Return the mean of a column with its normal 95 % interval, without nan and inf."""
         values = self[column]
         values = values[np.isfinite(values)]
         if len(values) == 0:
@@ -89,37 +89,37 @@ class Results:
 
     @property
     def runs(self) -> int:
-        """How many runs of every case there are."""
+        """Number of runs of every case."""
         return int(self['seed'].max()) + 1 if len(self) else 0
 
 
 class ResultsFile:
     """
-    The file of an experiment's results, and beside it a note of what they were made with.
+    The CSV file of an experiment's results, with a note of the versions that computed them.
 
     Parameters
     ----------
     file : Path
         The CSV file; the note has the same name and ends in .json.
     cases : sequence of NamedTuple
-        The cases, whose fields are the first columns; the seed is the next one.
+        The cases: their fields are the first columns, and the seed is the next one.
     fresh : bool
-        Whether results that are there are thrown away.
+        Whether existing results are discarded.
 
     Raises
     ------
     ResultsError
-        The results that are there are those of other cases, or of other sources of the core.
+        When the existing results are those of other cases, or of other sources of the core.
 
     """
 
     def __init__(self, file: Path, cases: Sequence[Any], *, fresh: bool = False) -> None:
-        """Take over what is there; a last row that was not written to its end is dropped."""
+        """Read the existing rows, and drop a last row that was not written completely."""
         self._file, self._note, self._cases = file, file.with_suffix('.json'), cases
         if fresh or not (file.exists() and self._note.exists()):
             file.write_text('', encoding='utf-8')
             self._note.write_text(json.dumps(made_with(), indent=2) + '\n', encoding='utf-8')
-        #: What the rows were made with.
+        #: Versions that the rows were computed with.
         self.made_with = self._check_note()
         lines = file.read_text(encoding='utf-8').splitlines(keepends=True)
         whole = [line for line in lines if line.endswith('\n')]
@@ -128,12 +128,12 @@ class ResultsFile:
         self.n_rows = max(len(whole) - 1, 0)
 
     def tasks(self, runs: int) -> list[tuple[Any, int]]:
-        """Return the cases and seeds whose rows are missing."""
+        """Return the cases and seeds whose rows are missing for this number of runs."""
         endless = ((case, seed) for seed in count() for case in self._cases)
         return list(islice(endless, self.n_rows, max(runs * len(self._cases), self.n_rows)))
 
     def extend(self, rows: Iterable[tuple[Any, int, Mapping[str, float]]]) -> None:
-        """Write rows of a case, a seed and what was measured, each as soon as it comes."""
+        """Write rows of case, seed and measured columns, each as soon as it is computed."""
         with self._file.open('a', encoding='utf-8', newline='') as file:
             writer = csv.writer(file, lineterminator='\n')
             for case, seed, measured in rows:
@@ -144,7 +144,7 @@ class ResultsFile:
                 self.n_rows += 1
 
     def read(self, runs: int) -> Results:
-        """Return the results of so many runs of every case."""
+        """Return the results of the first ``runs`` runs of every case."""
         with self._file.open(encoding='utf-8', newline='') as file:
             header, *rows = list(csv.reader(file))
         columns = zip(*rows[: runs * len(self._cases)], strict=True)
@@ -153,7 +153,7 @@ class ResultsFile:
         )
 
     def _check_note(self) -> dict[str, str]:
-        """Refuse results of another core: they might differ."""
+        """Refuse results of other sources of the core, which might differ."""
         note: dict[str, str] = json.loads(self._note.read_text(encoding='utf-8'))
         now = made_with()
         if note['core'] != now['core']:
@@ -176,7 +176,7 @@ class ResultsFile:
 
 
 def made_with() -> dict[str, str]:
-    """Return what results depend on: versions, and a digest of the core's sources."""
+    """Return what results depend on: versions and a digest of the core's sources."""
     import numba
 
     return {
@@ -190,13 +190,13 @@ def made_with() -> dict[str, str]:
 
 
 def markdown(header: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
-    """Return a Markdown table; the first column is of words, the others of numbers."""
+    """Return a Markdown table whose columns after the first are aligned to the right."""
     lines = [header, ['---', *['---:'] * (len(header) - 1)], *rows]
     return '\n'.join(f'| {" | ".join(map(str, line))} |' for line in lines) + '\n'
 
 
 def _array(texts: Sequence[str]) -> NDArray[Any]:
-    """Return a column as numbers, or as the texts they are."""
+    """Return a column as floats where all values are numbers, else as strings."""
     try:
         return np.array(texts, dtype=float)
     except ValueError:

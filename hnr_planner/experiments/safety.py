@@ -1,10 +1,10 @@
 """
-How far from obstacles the paths of different planners stay (paper, Section 1).
+Distance to obstacles along the paths of different planners (paper, Section 1).
 
-The paper says that Hit-and-Run's paths are safer, since they are more likely to stay away from
-the boundary, while those of RRT tend to be close to it. Here both are measured on maps of floors,
-beside the grid searches that most robots plan with, and again after shortening, which every path
-goes through before a robot follows it.
+The paper claims that Hit-and-Run's paths are safer, since they are more likely to stay away from
+the boundary, while those of RRT tend to be close to it. Both are measured on maps of floors,
+beside the grid searches that most robots plan with, as found and after the shortening that a path
+gets before a robot follows it.
 """
 
 from functools import cache
@@ -17,6 +17,7 @@ from hnr_planner.core import GridSpace, plan, simplify
 from hnr_planner.experiments.experiment import Experiment
 from hnr_planner.experiments.figures import draw_bars, legend, LOOKS, new_figure, style
 from hnr_planner.experiments.grid_search import a_star, wavefront
+from hnr_planner.experiments.registry import EXPERIMENTS
 from hnr_planner.experiments.requests import far_pairs
 from hnr_planner.experiments.results import markdown, Mean, Results
 from hnr_planner.maps import building, load_map, OccupancyMap
@@ -27,16 +28,17 @@ from numpy.typing import NDArray
 
 #: Generated floors, and their seeds.
 FLOORS = {f'floor {seed}': seed for seed in (2, 5, 11)}
-#: Names a folder of robot maps, files of map_server, that take part too.
+#: Environment variable that names a folder of further maps (map_server YAML files).
 MAPS_VARIABLE = 'HNR_MAPS'
+#: Radius of the robot [m].
 ROBOT_RADIUS = 0.22
-#: Nearer than this to an obstacle [m], past the robot's own radius, is near.
+#: A robot whose edge is nearer than this to an obstacle is near it [m].
 NEAR = 0.1
-#: Distance of the points at which the clearance of a path is measured [m]; they are farther apart
-#: where a path, the walk of millions of steps, would have more of them than this.
+#: Spacing of the points at which the clearance of a path is measured [m], and their largest
+#: number: on a longer path, such as a walk of millions of steps, the spacing is wider.
 SPACING, POINTS_MAX = 0.02, 500_000
 GRID_SEARCHES = {'a_star': a_star, 'wavefront': wavefront}
-#: Planners, and the clearance that they are asked to keep [m].
+#: Planners, and the clearance requested of them [m].
 PLANNERS = (
     ('hit_and_run', 0.0),
     ('rrt', 0.0),
@@ -49,7 +51,7 @@ SHAPES = ('found', 'shortened')
 
 
 class Case(NamedTuple):
-    """A map (a floor, or the stem of a file) and a planner; the clearance is asked for [m]."""
+    """A map (a generated floor or the stem of a file), a planner, the clearance requested [m]."""
 
     place: str
     algorithm: str
@@ -57,22 +59,22 @@ class Case(NamedTuple):
 
 
 def cases() -> list[Case]:
-    """List every planner on every map."""
+    """Return every planner on every map."""
     return [Case(place, *planner) for place in [*FLOORS, *_robot_maps()] for planner in PLANNERS]
 
 
 def _robot_maps() -> dict[str, Path]:
-    """Return the files of the maps in the folder that the environment names, by their stems."""
+    """Return the map files in the folder that ``MAPS_VARIABLE`` names, by their stems."""
     folder = os.environ.get(MAPS_VARIABLE)
     return {file.stem: file for file in sorted(Path(folder).glob('*.yaml'))} if folder else {}
 
 
 def run(case: Case, seed: int) -> dict[str, float]:
-    """Plan between two far points of the map, and measure the path as found and shortened."""
+    """Plan between two far points and return the measures of the path, found and shortened."""
     space = space_of(case.place)
     (ends,) = far_pairs(space, 1, seed)
     path = _path(space, ends, case, seed)
-    # What keeps a clearance was shortened before it was pushed off the walls.
+    # A path with a clearance was shortened before it was moved away from the walls.
     shortened = path if case.clearance else simplify(space, path, seed=seed)
     return {
         f'{shape}_{name}': value
@@ -83,7 +85,7 @@ def run(case: Case, seed: int) -> dict[str, float]:
 
 @cache
 def space_of(place: str) -> GridSpace:
-    """Return the space of the robot on a map."""
+    """Return the space of the robot on a map by its name."""
     occupancy = _occupancy(place)
     return GridSpace.from_occupancy(
         occupancy.data, occupancy.resolution, occupancy.origin, robot_radius=ROBOT_RADIUS
@@ -107,12 +109,13 @@ def _path(space: GridSpace, ends: NDArray, case: Case, seed: int) -> NDArray:
 
 def measures(space: GridSpace, path: NDArray) -> dict[str, float]:
     """
-    Return length, and the clearance along a path, past the robot's radius [m].
+    Return length [m] and measures of the clearance of the robot's edge along a path (m, 2).
 
-    ``near`` is the part of the length that is near an obstacle; with nothing but the length of a
-    robot's way in it, a path cannot become safer by dwelling in the open.
+    ``mean`` and ``least`` are clearances [m], ``near`` the fraction of the length near an
+    obstacle, ``near_length`` that length [m]. All are means over the length, not over time, so
+    that a path does not become safer by waiting in the open.
     """
-    clearance = space.clearance(_spread(path)) - ROBOT_RADIUS
+    clearance = space.clearance(_resampled(path)) - ROBOT_RADIUS
     near = clearance < NEAR
     length = float(np.hypot(*np.diff(path, axis=0).T).sum())
     return {
@@ -124,8 +127,8 @@ def measures(space: GridSpace, path: NDArray) -> dict[str, float]:
     }
 
 
-def _spread(path: NDArray) -> NDArray:
-    """Return points at equal distances along a path."""
+def _resampled(path: NDArray) -> NDArray:
+    """Return points (k, 2) at equal distances along a path."""
     ends = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(path, axis=0).T))])
     n_points = min(max(2, int(ends[-1] / SPACING)), POINTS_MAX)
     at = np.linspace(0.0, ends[-1], n_points)
@@ -133,7 +136,7 @@ def _spread(path: NDArray) -> NDArray:
 
 
 def _kinds(results: Results) -> dict[str, Results]:
-    """Return the results on generated floors, and those on robot maps if there are any."""
+    """Split the results into those on generated floors and, if any, those on robot maps."""
     generated = np.isin(results['place'], list(FLOORS))
     kinds = {'generated floors': results.rows(generated)}
     if not generated.all():
@@ -142,15 +145,15 @@ def _kinds(results: Results) -> dict[str, Results]:
 
 
 def figure(results: Results) -> Figure:
-    """Draw the mean clearance and the near part of the paths, as found and shortened."""
+    """Draw mean clearance and fraction near obstacles, of paths as found and shortened."""
     kinds = _kinds(results)
     drawn = new_figure(10.0, 0.4 + 3.4 * len(kinds))
     rows = drawn.subplots(len(kinds), 2, squeeze=False)
     for (mean, near), (kind, chosen) in zip(rows, kinds.items(), strict=True):
         _draw_measure(mean, chosen, 'mean')
         _draw_measure(near, chosen, 'near')
-        words = 'from the nearest obstacle, past the robot\u2019s radius [m]'
-        style(mean, f'{kind.capitalize()}: mean distance', words, '')
+        label = 'from the nearest obstacle, past the robot\u2019s radius [m]'
+        style(mean, f'{kind.capitalize()}: mean distance', label, '')
         style(near, f'{kind.capitalize()}: near', f'part of the length within {NEAR} m', '')
         near.set_yticklabels([])
         for axes in (mean, near):
@@ -162,7 +165,7 @@ def figure(results: Results) -> Figure:
 def _draw_measure(axes: Axes, results: Results, measure: str) -> None:
     draw_bars(
         axes,
-        [_words(*planner) for planner in PLANNERS],
+        [_label(*planner) for planner in PLANNERS],
         {
             shape: [_mean(results, planner, f'{shape}_{measure}') for planner in PLANNERS]
             for shape in SHAPES
@@ -172,14 +175,14 @@ def _draw_measure(axes: Axes, results: Results, measure: str) -> None:
 
 
 def tables(results: Results) -> str:
-    """Return the measures of every planner, over all maps of a kind and on each map."""
-    words = (
+    """Return tables of every planner's measures, over all maps of a kind and on each map."""
+    text = (
         'As found: mean distance to the nearest obstacle past the robot\u2019s radius, part of '
         f'the length within {NEAR} m of one, length; then the same, shortened.\n'
     )
     kinds = {f'all {kind}': chosen for kind, chosen in _kinds(results).items()}
     places = {place: results.where(place=place) for place in results.distinct('place')}
-    return '\n'.join([words, *(_table(*group) for group in (kinds | places).items())])
+    return '\n'.join([text, *(_table(*group) for group in (kinds | places).items())])
 
 
 def _table(name: str, results: Results) -> str:
@@ -187,27 +190,26 @@ def _table(name: str, results: Results) -> str:
     header += ['shortened: mean [m]', 'near', 'length [m]']
     columns = [f'{shape}_{name}' for shape in SHAPES for name in ('mean', 'near', 'length')]
     rows = [
-        [_words(*planner), *(_mean(results, planner, column) for column in columns)]
+        [_label(*planner), *(_mean(results, planner, column) for column in columns)]
         for planner in PLANNERS
     ]
     return markdown(header, rows)
 
 
 def _mean(results: Results, planner: tuple[str, float], column: str) -> Mean:
-    """Return the mean over the maps; that maps differ makes it no less certain."""
+    """Return the mean over the maps; its interval does not include differences of maps."""
     each = [results.of(Case(place, *planner)).mean(column) for place in results.distinct('place')]
     values, halves = np.array(each).T
     return Mean(float(values.mean()), math.hypot(*halves) / len(each))
 
 
-def _words(algorithm: str, clearance: float) -> str:
+def _label(algorithm: str, clearance: float) -> str:
     label = LOOKS[algorithm].label
     return f'{label}, clearance={clearance}' if clearance else label
 
 
 EXPERIMENT = Experiment(
-    name='safety',
-    about='Distance to obstacles along the paths of different planners.',
+    EXPERIMENTS['safety'],
     runs=500,
     cases=cases,
     run=run,

@@ -1,8 +1,8 @@
 """
 Transitions of Hit-and-Run and RRT through a spiral (paper, section "Planning", position only).
 
-The paper says: Hit-and-Run needs fewer transitions for all but the hardest problems, mostly by
-far; a fatter middle part makes it harder for RRT alone; and RRT covers the space more evenly.
+The paper claims that Hit-and-Run needs fewer transitions for all but the hardest problems, usually
+by a large margin, and that a wider middle arm makes the problem harder for RRT alone.
 """
 
 from functools import cache
@@ -12,6 +12,7 @@ from hnr_planner.core import GridSpace, plan, PlanResult
 from hnr_planner.experiments.experiment import Experiment
 from hnr_planner.experiments.figures import draw_profile, legend, LOOKS, new_figure, style
 from hnr_planner.experiments.median_run import draw_run, median_run
+from hnr_planner.experiments.registry import EXPERIMENTS
 from hnr_planner.experiments.results import markdown, Results
 from hnr_planner.maps import Corridor, spiral
 from matplotlib.axes import Axes
@@ -20,12 +21,12 @@ import numpy as np
 
 #: Widths of the arms [m] in a square of 10 m.
 WIDTHS = (0.6, 0.8, 1.0, 1.2, 1.4, 1.6, 1.8, 2.0, 2.2, 2.4)
-#: The other family: arms of one width, but for the middle one with these widths [m]. The square
-#: grows with that arm, so that the corridor keeps its number of arms (17 or 18).
+#: The second family: all arms have one width, except the middle arm with these widths [m]. The
+#: square grows with that arm, so that the corridor keeps its number of arms (17 or 18).
 NARROW = 1.0
 MIDDLES = (1.0, 1.5, 2.0, 3.0, 4.0, 5.0)
-#: An algorithm and when it ends: at a sample in the region around the goal, the paper's test, or
-#: as soon as a sample sees the goal.
+#: Algorithm and goal test: a sample in the region around the goal, as in the paper, or a sample
+#: that sees the goal.
 SEARCHES = (
     ('hit_and_run', 'region'),
     ('rrt', 'region'),
@@ -33,13 +34,13 @@ SEARCHES = (
     ('rrt', 'sight'),
     ('auto', 'region'),
 )
-#: The paper's lower plots: the samples of one run at this width.
+#: Width of the runs whose samples are drawn, as in the paper's lower plots [m].
 SHOWN_WIDTH = 1.2
 LAYOUT: list[Any] = [['even', 'fat'], ['hit_and_run', 'rrt']]
 
 
 class Case(NamedTuple):
-    """A spiral and a search through it; widths of the arms and of the middle one [m]."""
+    """Widths of the arms and of the middle arm [m], algorithm, and goal test."""
 
     width: float
     middle: float
@@ -47,19 +48,19 @@ class Case(NamedTuple):
     ends: str
 
 
-#: The spirals of both families: the first two fields of the cases. One of them is in both.
+#: The spirals of both families, as the first two fields of their cases. They share one spiral.
 EVEN = [(width, width) for width in WIDTHS]
 FAT = [(NARROW, middle) for middle in MIDDLES]
 
 
 def cases() -> list[Case]:
-    """List every search through every spiral."""
+    """Return every search through every spiral."""
     shapes = dict.fromkeys(EVEN + FAT)
     return [Case(*shape, *search) for shape in shapes for search in SEARCHES]
 
 
 def run(case: Case, seed: int) -> dict[str, float]:
-    """Search once, and count."""
+    """Search once and return transitions, rejected proposals and path length [m]."""
     result = search(case, seed)
     return {
         'transitions': result.iterations,
@@ -69,7 +70,7 @@ def run(case: Case, seed: int) -> dict[str, float]:
 
 
 def search(case: Case, seed: int) -> PlanResult:
-    """Search once; nothing cuts it and nothing shortens its path."""
+    """Search once, without time limit and without shortening."""
     made, space = built(case.width, case.middle)
     return plan(
         space,
@@ -94,7 +95,7 @@ def built(width: float, middle: float) -> tuple[Corridor, GridSpace]:
 
 
 def figure(results: Results) -> Figure:
-    """Draw transitions over both families' widths, and the samples of one run of each planner."""
+    """Draw transitions against width for both families, and the samples of the median runs."""
     drawn = new_figure(10.0, 9.2)
     axes = drawn.subplot_mosaic(LAYOUT, height_ratios=(1, 1.1))
     _draw_family(axes['even'], results, EVEN)
@@ -110,8 +111,8 @@ def figure(results: Results) -> Figure:
     made, _ = built(SHOWN_WIDTH, SHOWN_WIDTH)
     for name in ('hit_and_run', 'rrt'):
         shown = Case(SHOWN_WIDTH, SHOWN_WIDTH, name, 'region')
-        words = f'{LOOKS[name].label}, width {SHOWN_WIDTH}'
-        draw_run(axes[name], made, median_run(results, shown, search), words)
+        label = f'{LOOKS[name].label}, width {SHOWN_WIDTH}'
+        draw_run(axes[name], made, median_run(results, shown, search), label)
     return drawn
 
 
@@ -121,13 +122,13 @@ def _draw_family(axes: Axes, results: Results, shapes: list[tuple[float, float]]
         algorithm, ends = search
         means = [results.of(Case(*shape, *search)).mean('transitions') for shape in shapes]
         line = '-' if ends == 'region' else '--'
-        draw_profile(axes, middles, means, LOOKS[algorithm], label=_words(*search), line=line)
+        draw_profile(axes, middles, means, LOOKS[algorithm], label=_label(*search), line=line)
     axes.set_xticks(middles)
     axes.set_yscale('log')
 
 
 def tables(results: Results) -> str:
-    """Return the mean transitions of every search on every spiral, a table for each family."""
+    """Return a table for each family: mean transitions of every search on every spiral."""
     families = {
         'width of the arms [m]': EVEN,
         f'width of the middle arm [m], the others {NARROW}': FAT,
@@ -135,8 +136,8 @@ def tables(results: Results) -> str:
     return '\n'.join(_table(results, *family) for family in families.items())
 
 
-def _table(results: Results, words: str, shapes: list[tuple[float, float]]) -> str:
-    header = [words, *(_words(*search) for search in SEARCHES), 'RRT / Hit-and-Run']
+def _table(results: Results, title: str, shapes: list[tuple[float, float]]) -> str:
+    header = [title, *(_label(*search) for search in SEARCHES), 'RRT / Hit-and-Run']
     rows = []
     for shape in shapes:
         means = [results.of(Case(*shape, *search)).mean('transitions') for search in SEARCHES]
@@ -145,14 +146,13 @@ def _table(results: Results, words: str, shapes: list[tuple[float, float]]) -> s
     return markdown(header, rows)
 
 
-def _words(algorithm: str, ends: str) -> str:
+def _label(algorithm: str, ends: str) -> str:
     label = LOOKS[algorithm].label
     return label if ends == 'region' else f'{label}, by sight'
 
 
 EXPERIMENT = Experiment(
-    name='spiral',
-    about='Transitions through a spiral corridor, by the width of its arms.',
+    EXPERIMENTS['spiral'],
     runs=500,
     cases=cases,
     run=run,

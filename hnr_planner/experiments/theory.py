@@ -1,11 +1,11 @@
 """
-From the flow to the length of a path: what theory says of Hit-and-Run, beside what it does.
+Transitions of Hit-and-Run into a goal: computed, bounded and measured.
 
-The paper bounds the mixing time of a set, and from that the length of a path (its Section 4). Its
-own constants are far from any number of steps that one would wait for; the chain of reasoning is
-sound, and can be followed with flows that are computed. In sets made of square blocks one integral
-over lines gives the flow between all blocks, and so the expected transitions into a goal, and a
-bound on them by way of the relaxation time. ``mixing`` measures the relaxation time itself.
+The paper bounds the mixing time of a set and from it the length of a path (Section 4). Its
+constants are too large to compare with any walk, but the same reasoning works with computed flows.
+In a set of square blocks an integral over lines gives the flow of one step between all blocks; the
+flow gives the expected number of transitions into a goal, and the relaxation time gives a bound on
+it. Experiment ``mixing`` measures the relaxation time itself.
 """
 
 from functools import cache
@@ -16,6 +16,7 @@ from hnr_planner.core.theory import cell_flow, CellFlow, expected_transitions, t
 from hnr_planner.drawing import FAINT_INK
 from hnr_planner.experiments.experiment import Experiment
 from hnr_planner.experiments.figures import draw_profile, legend, Look, new_figure, style
+from hnr_planner.experiments.registry import EXPERIMENTS
 from hnr_planner.experiments.results import markdown, Results
 from hnr_planner.maps import spiral
 from matplotlib.figure import Figure
@@ -25,9 +26,9 @@ from numpy.typing import NDArray
 #: Widths of the door between two rooms of 1 m x 1 m, and of the spiral's corridor [m].
 DOORS = (0.05, 0.1, 0.2, 0.4)
 WIDTHS = (0.8, 1.2, 1.6, 2.0)
-#: Side of a block, as thick as the walls [m], and cells of the grid along it.
+#: Side of a block [m], which is also the thickness of the walls; grid cells along that side.
 ROOMS_BLOCK, SPIRAL_BLOCK, FINENESS = 0.05, 0.4, 5
-#: Lines that the flow is computed with.
+#: Number of lines in the quadrature of the flow.
 N_LINES = 1 << 17
 LOOKS = {
     'rooms': Look('two rooms and a door', '#0072B2', 'o'),
@@ -36,7 +37,7 @@ LOOKS = {
 
 
 class Case(NamedTuple):
-    """Two rooms with a door, or a spiral, of a width [m]."""
+    """Shape, ``rooms`` or ``spiral``, and width [m] of the door or of the corridor."""
 
     shape: str
     width: float
@@ -46,7 +47,15 @@ class Blocks(NamedTuple):
     """
     A set of square blocks.
 
-    ``free`` (rows, columns) are the blocks in the set and ``goal`` those of the goal.
+    Attributes
+    ----------
+    space : GridSpace
+        The set.
+    size : float
+        Side of a block [m].
+    free, goal : (rows, columns) bool
+        Blocks of the set, and blocks of the goal.
+
     """
 
     space: GridSpace
@@ -56,7 +65,7 @@ class Blocks(NamedTuple):
 
 
 class Theory(NamedTuple):
-    """What theory says of a set: its relaxation time, and the transitions into the goal."""
+    """Computed relaxation time [steps], expected transitions into the goal, and their bound."""
 
     relaxation: float
     expected: float
@@ -64,13 +73,13 @@ class Theory(NamedTuple):
 
 
 def cases() -> list[Case]:
-    """List the rooms and the spirals."""
+    """Return the rooms and the spirals."""
     rooms = [Case('rooms', width) for width in DOORS]
     return rooms + [Case('spiral', width) for width in WIDTHS]
 
 
 def run(case: Case, seed: int) -> dict[str, float]:
-    """Walk from a uniform point into the goal, and count."""
+    """Walk from a uniform point into the goal and return the number of transitions."""
     blocks = blocks_of(case)
     start = _uniform_point(blocks, np.random.default_rng(seed))
     return {'transitions': _transitions(blocks, start, seed)}
@@ -86,11 +95,11 @@ def _transitions(blocks: Blocks, start: NDArray, seed: int) -> int:
         arrived = _inside(blocks, blocks.goal, walk)
         if arrived.any():
             return int(arrived.argmax()) + 1
-        n_draws *= 4  # the same walk, and more of it
+        n_draws *= 4  # the same walk, longer
 
 
 def _inside(blocks: Blocks, chosen: NDArray, points: NDArray) -> NDArray[np.bool_]:
-    """Say which points (k, 2) lie in chosen blocks."""
+    """Return which points (k, 2) [m] lie in the chosen blocks (rows, columns)."""
     columns, rows = np.floor(points / blocks.size).astype(int).T
     inside: NDArray[np.bool_] = chosen[rows, columns]
     return inside
@@ -107,17 +116,17 @@ def _uniform_point(blocks: Blocks, rng: np.random.Generator) -> NDArray[np.float
 
 @cache
 def blocks_of(case: Case) -> Blocks:
-    """Build a set."""
+    """Build the set of a case."""
     return _rooms(case.width) if case.shape == 'rooms' else _spiral(case.width)
 
 
 def _rooms(door: float) -> Blocks:
-    """Build two rooms; the goal is the quarter of the right one that is farthest from the left."""
+    """Build two rooms; the goal is the upper right quarter of the right room."""
     n = round(1.0 / ROOMS_BLOCK)
     free = np.ones((n, 2 * n + 1), dtype=bool)
     free[:, n] = False
-    wide = round(door / ROOMS_BLOCK)
-    first, last = (n - wide) // 2, (n + wide) // 2
+    n_door = round(door / ROOMS_BLOCK)
+    first, last = (n - n_door) // 2, (n + n_door) // 2
     free[first:last, n] = True
     goal = np.zeros_like(free)
     half = n // 2
@@ -126,7 +135,7 @@ def _rooms(door: float) -> Blocks:
 
 
 def _spiral(width: float) -> Blocks:
-    """Build a spiral with walls as thick as a block; the goal is the square at its inner end."""
+    """Build a spiral whose walls are one block thick; the goal is the square at its inner end."""
     made = spiral(width, resolution=SPIRAL_BLOCK, wall=SPIRAL_BLOCK)
     rows, columns = np.indices(made.blocked.shape)
     centres = (np.stack([columns, rows], axis=-1) + 0.5) * SPIRAL_BLOCK
@@ -140,7 +149,7 @@ def _blocks(free: NDArray, goal: NDArray, size: float) -> Blocks:
 
 
 def _flow(blocks: Blocks) -> CellFlow:
-    """Return the flow between the free blocks, without what rounding leaves to the others."""
+    """Return the flow between the free blocks, without the others' rounding errors."""
     flow = cell_flow(blocks.space, blocks.free.shape, N_LINES)
     free = _inside(blocks, blocks.free, flow.centre)
     return CellFlow(flow.area[free], flow.flow[np.ix_(free, free)], flow.centre[free])
@@ -148,27 +157,27 @@ def _flow(blocks: Blocks) -> CellFlow:
 
 @cache
 def theory_of(case: Case) -> Theory:
-    """Compute what theory says."""
+    """Compute relaxation time, expected transitions and their bound for a case."""
     blocks = blocks_of(case)
     flow = _flow(blocks)
     goal = _inside(blocks, blocks.goal, flow.centre)
-    part = float(flow.area[goal].sum() / flow.area.sum())
+    fraction = float(flow.area[goal].sum() / flow.area.sum())
     relaxation = flow.relaxation_time
     expected = float((expected_transitions(flow, goal) * flow.area).sum() / flow.area.sum())
-    return Theory(relaxation, expected, transitions_bound(relaxation, part))
+    return Theory(relaxation, expected, transitions_bound(relaxation, fraction))
 
 
 def figure(results: Results) -> Figure:
-    """Draw the transitions into the goal, as measured and as bounded, over those computed."""
+    """Draw the measured transitions into the goal and the bound against those computed."""
     drawn = new_figure(6.4, 4.6)
     axes = drawn.subplots()
     for shape, look in LOOKS.items():
         here = [case for case in cases() if case.shape == shape]
-        said = [theory_of(case) for case in here]
-        expected = [theory.expected for theory in said]
+        theories = [theory_of(case) for case in here]
+        expected = [theory.expected for theory in theories]
         measured = [results.of(case).mean('transitions') for case in here]
         draw_profile(axes, expected, measured, look)
-        bounds = [theory.bound for theory in said]
+        bounds = [theory.bound for theory in theories]
         axes.plot(expected, bounds, '--', color=look.colour, label=f'{look.label}: the bound')
     axes.set(xscale='log', yscale='log')
     reach = axes.get_xlim()
@@ -179,20 +188,19 @@ def figure(results: Results) -> Figure:
 
 
 def tables(results: Results) -> str:
-    """Return what was computed and what was measured."""
+    """Return a table of computed, measured and bounded transitions."""
     header = ['set', 'relaxation time', 'transitions, computed', 'measured', 'bound']
     rows = []
     for case in cases():
-        said = theory_of(case)
+        theory = theory_of(case)
         measured = results.of(case).mean('transitions')
-        computed = f'{said.relaxation:.1f}', f'{said.expected:.1f}'
-        rows.append([f'{case.shape} {case.width}', *computed, measured, f'{said.bound:.1f}'])
+        computed = f'{theory.relaxation:.1f}', f'{theory.expected:.1f}'
+        rows.append([f'{case.shape} {case.width}', *computed, measured, f'{theory.bound:.1f}'])
     return markdown(header, rows)
 
 
 EXPERIMENT = Experiment(
-    name='theory',
-    about='How many transitions a walk takes into a goal: computed, bounded and measured.',
+    EXPERIMENTS['theory'],
     runs=1000,
     cases=cases,
     run=run,

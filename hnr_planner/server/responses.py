@@ -177,7 +177,7 @@ class SampleResponse(Response):
     @property
     def n_parts(self) -> int:
         """Return how many connected parts of the free space the draws lie in."""
-        return 0 if self.draws is None else len(np.unique(self.draws.parts))
+        return 0 if self.draws is None else len(np.unique(self.draws.components))
 
     @property
     def parents(self) -> NDArray[np.intp]:

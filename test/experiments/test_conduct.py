@@ -8,6 +8,7 @@ from typing import NamedTuple
 from hnr_planner.experiments.conduct import conduct
 from hnr_planner.experiments.experiment import Experiment
 from hnr_planner.experiments.figures import new_figure
+from hnr_planner.experiments.registry import ExperimentEntry
 from hnr_planner.experiments.results import Mean, Results, ResultsError, ResultsFile
 from matplotlib.figure import Figure
 import numpy as np
@@ -50,8 +51,7 @@ def experiment(
     cases: list, run: Callable[[Case, int], Mapping[str, float]] = measure
 ) -> Experiment:
     return Experiment(
-        name='arithmetic',
-        about='Products.',
+        ExperimentEntry('arithmetic', __name__, 'Products.'),
         runs=4,
         cases=lambda: cases,
         run=run,

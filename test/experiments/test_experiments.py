@@ -5,7 +5,7 @@ from pathlib import Path
 import re
 
 from hnr_planner.core import GridSpace
-from hnr_planner.experiments import clouds, load, NAMES, safety
+from hnr_planner.experiments import clouds, EXPERIMENTS, load, NAMES, safety
 from hnr_planner.experiments.conduct import conduct
 from hnr_planner.experiments.mixing import sets, variation
 from hnr_planner.experiments.requests import far_pairs
@@ -25,7 +25,7 @@ def test_every_experiment_runs_and_repeats_itself(
     monkeypatch.setattr(sets, 'CHAINS_PER_CELL', 4)  # a few chains, seen from afar
     monkeypatch.setattr(variation, 'MIXED', 0.5)
     experiment = load(name)
-    assert experiment.name == name
+    assert experiment.entry is EXPERIMENTS[name]
     results = conduct(experiment, 1, tmp_path, n_jobs=1)
     cases = experiment.cases()
     assert len(results) == len(cases)

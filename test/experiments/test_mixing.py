@@ -11,10 +11,10 @@ from hnr_planner.experiments.mixing import curves, dimension, relaxation
 from hnr_planner.experiments.mixing.sets import MixingSet, planar_sets
 from hnr_planner.experiments.mixing.solids import solid, SOLIDS, WIDE
 from hnr_planner.experiments.mixing.variation import (
-    approach,
+    CHECKPOINTS,
     columns,
     MIXED,
-    SEEN_AT,
+    run_until_mixed,
     steps_to_mix,
 )
 from hnr_planner.experiments.results import Results
@@ -122,16 +122,16 @@ def test_a_warm_start_is_uniform_on_its_half():
     assert surprise(mixing_set, points, half) < 6.0
 
 
-# -- the approach
+# -- total variation along a run
 
 
 def test_steps_until_a_curve_falls_below_the_mark():
     for time in (10.0, 300.0, 9000.0):
-        curve = 0.9 * np.exp(-np.array(SEEN_AT) / time)
+        curve = 0.9 * np.exp(-np.array(CHECKPOINTS) / time)
         assert steps_to_mix(curve) == pytest.approx(time * math.log(0.9 / MIXED), rel=0.01)
     assert math.isnan(steps_to_mix([0.9, 0.5, 0.2]))
     assert steps_to_mix([0.05]) == 1.0
-    assert SEEN_AT[:12] == (*range(1, 9), 10, 12, 14, 16)
+    assert CHECKPOINTS[:12] == (*range(1, 9), 10, 12, 14, 16)
 
 
 def test_the_law_lies_between_both_estimates_and_follows_the_flow():
@@ -147,10 +147,12 @@ def test_the_law_lies_between_both_estimates_and_follows_the_flow():
     def starts(n_chains: int, rng: np.random.Generator) -> Floats:
         return rng.uniform(0.0, 1.0 / 6.0, size=(n_chains, 2))
 
-    seen, chains = approach(dataclasses.replace(rooms, starts=starts), HitAndRunWalk(), 1)
+    distances, chains = run_until_mixed(
+        dataclasses.replace(rooms, starts=starts), HitAndRunWalk(), 1
+    )
     assert len(chains.points) == 1800
     exact = []
-    for steps, distance in zip(SEEN_AT, seen, strict=False):
+    for steps, distance in zip(CHECKPOINTS, distances, strict=False):
         law = np.linalg.matrix_power(flow.kernel, steps)[0]
         exact.append(0.5 * np.abs(np.bincount(coarse, law) - rooms.shares).sum())
         assert distance.lower_bound - 0.042 < exact[-1] < distance.plug_in + 0.042
@@ -158,14 +160,14 @@ def test_the_law_lies_between_both_estimates_and_follows_the_flow():
 
 
 def test_chains_walk_on_until_they_are_mixed_and_no_longer():
-    seen, chains = approach(planar_sets()['L'], HitAndRunWalk(), 3)
-    assert seen[-1].plug_in < MIXED
-    assert chains.steps.tolist() == [SEEN_AT[len(seen) - 1]] * len(chains.points)
-    row = columns(seen)
-    assert row['first'] <= row['last'] <= SEEN_AT[len(seen) - 1]
-    assert row[f'above_{SEEN_AT[0]}'] == seen[0].plug_in
-    assert row[f'below_{SEEN_AT[len(seen) - 1]}'] == seen[-1].lower_bound
-    assert math.isnan(row[f'above_{SEEN_AT[-1]}'])
+    distances, chains = run_until_mixed(planar_sets()['L'], HitAndRunWalk(), 3)
+    assert distances[-1].plug_in < MIXED
+    assert chains.steps.tolist() == [CHECKPOINTS[len(distances) - 1]] * len(chains.points)
+    row = columns(distances)
+    assert row['first'] <= row['last'] <= CHECKPOINTS[len(distances) - 1]
+    assert row[f'above_{CHECKPOINTS[0]}'] == distances[0].plug_in
+    assert row[f'below_{CHECKPOINTS[len(distances) - 1]}'] == distances[-1].lower_bound
+    assert math.isnan(row[f'above_{CHECKPOINTS[-1]}'])
 
 
 # -- the relaxation time

@@ -1,10 +1,10 @@
 """
-Chains: runs of a walk that stop and go on as if they never had.
+Chains: runs of a random walk that can be stopped, saved and resumed.
 
-What a chain is at a step is a few numbers: its point, its random stream, what the space remembers
-there, and counts. ``begin_chains`` makes them, ``walk_on`` returns draws and the chains after
-them, and nothing else changes: two runs of half the length give what one long run gives, to the
-last bit. Chains are arrays only, so that a file can hold them:
+The state of a chain is its point, its random stream, the numbers that the space caches there, and
+counters. ``begin_chains`` makes the states; ``walk_on`` is a pure function from states to draws
+and new states, so that two runs of half the length equal one long run to the last bit. A state
+consists of arrays only, and can be kept in a file:
 
 >>> np.savez('chains.npz', **vars(chains))
 >>> chains = Chains(**np.load('chains.npz'))
@@ -14,7 +14,7 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
-from hnr_planner.core.checks import check_count, check_points, check_seed, Floats
+from hnr_planner.core.checks import check_count, check_points, check_seed, Floats, Seed
 from hnr_planner.core.errors import RequestError, StuckError
 from hnr_planner.core.kernels.borrowed import borrowed
 from hnr_planner.core.kernels.kernel import kernel
@@ -35,25 +35,25 @@ from hnr_planner.core.spaces.space import Space
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-#: A chain that does not move in so many steps is stuck. One step in fifty that moves is enough: a
-#: walk of such steps fails once in 6e8 chances.
+#: A chain is stuck once it has not moved for so many steps. A chain that moves at one step in
+#: fifty stays that long with probability .98 ** 1000 = 2e-9.
 STUCK_AFTER = 1000
 
 
 class Chain(NamedTuple):
     """
-    One chain, which a run moves along.
+    State of one chain; a run changes its arrays in place.
 
     Attributes
     ----------
     x : (dim,)
-        Where it is, in the space's kernel frame.
+        Position in the space's kernel frame.
     memory : (k,)
-        What the space remembers there.
+        Numbers that the space caches for this position.
     rng : (4,) uint64
-        Its random stream.
-    counts : (5,) int64
-        What is counted of it.
+        Random stream.
+    counts : (N_COUNTS,) int64
+        Counters: the columns named in ``walks``.
 
     """
 
@@ -64,22 +64,24 @@ class Chain(NamedTuple):
 
 
 def new_chain(space: Space, x: Floats, rng: Stream) -> Chain:
-    """Return a chain at ``x`` (dim,), a free point in the kernel frame, which it moves."""
+    """Return a chain at ``x`` (dim,), a free point in the kernel frame; a run changes ``x``."""
     memory = np.zeros(memory_size(space.data, space.dim))
     return Chain(x, memory, rng, np.zeros(N_COUNTS, dtype=np.int64))
 
 
-def run_chain(space: Space, step: Any, chain: Chain, thin: int, draws: Floats) -> None:
+def run_chain(space: Space, walk: Any, chain: Chain, thin: int, draws: Floats) -> None:
     """
-    Walk on, and fill ``draws`` (n_draws, dim), one of every ``thin`` steps, kernel frame.
+    Run a chain of a compiled walk, and write every ``thin``-th point into ``draws``.
+
+    ``draws`` is (n_draws, dim), in the kernel frame.
 
     Raises
     ------
     StuckError
-        When the chain does not move any more.
+        When the chain has not moved for ``STUCK_AFTER`` steps.
 
     """
-    take_steps(space.data, step, chain, np.zeros(space.dim), thin, draws)
+    take_steps(space.data, walk, chain, np.zeros(space.dim), thin, draws)
     if chain.counts[STILL] >= STUCK_AFTER:
         steps, moves, zero_chords = chain.counts[[STEPS, MOVES, ZERO_CHORDS]]
         raise StuckError(
@@ -92,20 +94,23 @@ def run_chain(space: Space, step: Any, chain: Chain, thin: int, draws: Floats) -
 
 @kernel
 def take_steps(space, walk, chain, u, thin, draws):
-    """Take steps until ``draws`` (n_draws, dim) are full or the chain is stuck; ``u`` is room."""
+    """Fill ``draws`` (n_draws, dim), or return when stuck; ``u`` (dim,) is a work array, zero."""
     space, chain = borrowed(space), borrowed(chain)
     u, draws = borrowed(u), borrowed(draws)
     x, counts = chain.x, chain.counts
-    here = open_cache(space, x, chain.memory)
+    cache = open_cache(space, x, chain.memory)
     for k in range(len(draws)):
         for _ in range(thin):
             if counts[STEPS] % REFRESH == 0:
-                refresh(space, here)
+                refresh(space, cache)
             counts[STEPS] += 1
-            counts[STILL] += 1
-            take_step(walk, space, here, u, chain.rng, counts)
-            if counts[STILL] >= STUCK_AFTER:
-                return
+            if take_step(walk, space, cache, u, chain.rng, counts):
+                counts[MOVES] += 1
+                counts[STILL] = 0
+            else:
+                counts[STILL] += 1
+                if counts[STILL] >= STUCK_AFTER:
+                    return
         for i in range(len(x)):
             draws[k, i] = x[i]
 
@@ -113,18 +118,18 @@ def take_steps(space, walk, chain, u, thin, draws):
 @dataclass(frozen=True, eq=False)
 class Chains:
     """
-    Chains between two steps; the same space goes with them always.
+    States of several chains between two steps, all in the space that they were begun in.
 
     Attributes
     ----------
     points : (n_chains, dim)
-        Where they are, in the space's kernel frame.
+        Positions in the space's kernel frame.
     memory : (n_chains, k)
-        What the space remembers there.
+        Numbers that the space caches for these positions.
     streams : (n_chains, 4) uint64
-        Their random streams.
+        Random streams.
     counts : (n_chains, 5) int64
-        The columns below, and steps since the last move.
+        Counters: steps, moves, zero chords, redraws, and steps since the last move.
 
     """
 
@@ -139,41 +144,42 @@ class Chains:
 
     @property
     def steps(self) -> NDArray[np.int64]:
-        """Steps (n_chains,) taken so far."""
+        """Number of steps taken so far, of each chain (n_chains,)."""
         return self.counts[:, STEPS]
 
     @property
     def moves(self) -> NDArray[np.int64]:
-        """Steps (n_chains,) that moved the chain: of the ball walk, those not refused."""
+        """Number of steps that moved each chain (n_chains,): accepted steps of a ball walk."""
         return self.counts[:, MOVES]
 
     @property
     def zero_chords(self) -> NDArray[np.int64]:
-        """Steps (n_chains,) whose chord was shorter than the space's margin."""
+        """Number of steps of each chain (n_chains,) with a chord below the space's margin."""
         return self.counts[:, ZERO_CHORDS]
 
     @property
     def redraws(self) -> NDArray[np.int64]:
-        """Draws (n_chains,) thrown away because they rounded onto the boundary."""
+        """Number of draws of each chain (n_chains,) rejected for rounding onto the boundary."""
         return self.counts[:, REDRAWS]
 
 
 def begin_chains(
-    space: Space, start: ArrayLike, *, n_chains: int = 1, seed: int | None = None
+    space: Space, start: ArrayLike, *, n_chains: int = 1, seed: Seed = None
 ) -> Chains:
     """
-    Put chains at their start, each with a random stream of its own.
+    Make chains at their start, each with a random stream of its own.
 
     Parameters
     ----------
     space : Space
         The set to draw from.
     start : (dim,) or (n_chains, dim)
-        A free point for all, or one for each; ``n_chains`` may then be left out.
+        One free point for all chains, or one for each chain; ``n_chains`` is optional then.
     n_chains : int
-        Independent chains.
-    seed : int, optional
-        Fresh when left out. The first chains are the same however many there are.
+        Number of independent chains.
+    seed : int, numpy.random.SeedSequence, numpy.random.Generator or None
+        Fresh when left out. A generator is advanced. The first chains are the same however many
+        there are.
 
     Raises
     ------
@@ -201,44 +207,44 @@ def walk_on(
     thin: int = 1,
 ) -> tuple[Floats, Chains]:
     """
-    Let chains take ``n_draws`` times ``thin`` further steps; they may change their walk.
+    Run chains for ``n_draws * thin`` further steps, by any walk.
 
     Parameters
     ----------
     space : Space
-        The set that the chains began in.
+        The set that the chains were begun in.
     chains : Chains
-        They stay as they are.
+        States to start from; they are not changed.
     n_draws : int
-        Points kept of each chain.
+        Number of points kept of each chain.
     walk : str or Walk
-        A name in ``WALKS``, or a walk with its settings.
+        A name in ``WALKS``, or a walk with its settings. It may differ from earlier runs.
     thin : int
-        One point is kept of every ``thin`` steps, the last.
+        Steps for each point kept; the last one is kept.
 
     Returns
     -------
     draws : (n_chains, n_draws, dim) float64
         Points in the caller's frame.
     chains : Chains
-        After the last draw.
+        States after the last draw.
 
     Raises
     ------
     RequestError
         When an argument is malformed, or the chains are not of this space.
     StuckError
-        When a chain does not move any more.
+        When a chain has not moved for 1000 steps.
 
     """
     n_draws, thin = check_count('n_draws', n_draws, 0), check_count('thin', thin, 1)
-    step = make_walk(walk).compiled(space)
+    compiled = make_walk(walk).compiled(space)
     _check_fit(space, chains)
     after = Chains(*(array.copy() for array in vars(chains).values()))
     draws = np.empty((len(after.points), n_draws, space.dim))
 
     def run(k: int) -> None:
-        run_chain(space, step, after.chain(k), thin, draws[k])
+        run_chain(space, compiled, after.chain(k), thin, draws[k])
 
     with ThreadPoolExecutor() as pool:
         list(pool.map(run, range(len(draws))))
@@ -246,6 +252,7 @@ def walk_on(
 
 
 def _check_starts(space: Space, start: ArrayLike) -> Floats:
+    """Return the starts as (dim,) or (n_chains, dim) free points, or raise RequestError."""
     starts = check_points('start', start, space.dim)
     for point in np.atleast_2d(starts):
         if not np.isfinite(point).all():
@@ -258,7 +265,7 @@ def _check_starts(space: Space, start: ArrayLike) -> Floats:
 
 
 def _check_fit(space: Space, chains: Chains) -> None:
-    """Refuse chains of another space as far as their shape tells."""
+    """Refuse chains whose arrays have the shape of another space."""
     wanted = {
         'points': space.dim,
         'memory': memory_size(space.data, space.dim),

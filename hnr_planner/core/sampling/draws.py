@@ -1,10 +1,10 @@
 """
-Draws: a direction, a point of a ball, a point of a chord, and so a step of Hit-and-Run.
+Random draws: a direction, a point of a ball, a point of a chord, a step of Hit-and-Run.
 
-Planners step from any point that they have: from the compiled space, a free point ``x`` and a
-stream a step writes the next point into ``y``. It returns how many draws it threw away because
-they rounded onto the boundary: points of the space stay points of the space. Walks, which go on
-from where the last step led, are in ``walks``.
+These kernels serve planners, which step from any point: given a compiled space, a free point ``x``
+and a random stream, a step writes the next point into ``y``. It returns the number of redraws:
+draws that rounded onto the boundary and were drawn again, so that ``y`` is always a free point.
+The steps of chains, which start where the last one ended, are in module ``walks``.
 """
 
 import math
@@ -14,13 +14,13 @@ from hnr_planner.core.kernels.streams import draw_normals, uniform
 from hnr_planner.core.spaces.primitives import chord, contains
 import numpy as np
 
-#: After so many draws in a row on the boundary the chord holds no other number: the walk stays.
+#: After so many consecutive redraws the chord holds no other number, and the step stays at ``x``.
 REDRAWS_MAX = 100
 
 
 @kernel
 def hit_and_run_step(space, x, rng, y):
-    """Take a step of Hit-and-Run: uniform direction, uniform point of its chord (paper, 1)."""
+    """Write a step of Hit-and-Run from ``x`` (dim,) into ``y``; return the number of redraws."""
     u = np.empty(len(x))
     draw_direction(rng, u)
     return draw_on_chord(space, x, u, rng, y)
@@ -28,7 +28,7 @@ def hit_and_run_step(space, x, rng, y):
 
 @inlined
 def draw_direction(rng, u):
-    """Draw ``u`` uniformly from the unit sphere."""
+    """Draw ``u`` (dim,) uniformly from the unit sphere."""
     squared = 0.0
     while squared == 0.0:
         squared = draw_normals(rng, u)
@@ -39,7 +39,7 @@ def draw_direction(rng, u):
 
 @inlined
 def draw_in_ball(radius, rng, u):
-    """Draw ``u`` uniformly from the ball around the origin."""
+    """Draw ``u`` (dim,) uniformly from the ball of this radius around the origin."""
     draw_direction(rng, u)
     length = radius * uniform(rng) ** (1.0 / len(u))
     for i in range(len(u)):
@@ -48,14 +48,14 @@ def draw_in_ball(radius, rng, u):
 
 @kernel
 def draw_on_chord(space, x, u, rng, y):
-    """Draw ``y`` uniformly from the chord of ``x`` along ``u``; return the draws thrown away."""
+    """Draw ``y`` uniformly from the chord of ``x`` along ``u``; return the number of redraws."""
     lower, upper = chord(space, x, u, -u)
     return draw_between(space, x, u, lower, upper, rng, y)
 
 
 @kernel
 def draw_between(space, x, u, lower, upper, rng, y):
-    """Draw ``y = x + s u`` with ``s`` uniform in a part (lower, upper) of the chord; likewise."""
+    """Draw ``y = x + s u``, s uniform in (lower, upper); return the number of redraws."""
     for redraws in range(REDRAWS_MAX):
         s = lower + (upper - lower) * uniform(rng)
         for i in range(len(x)):

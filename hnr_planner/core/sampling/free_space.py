@@ -1,9 +1,9 @@
 """
-Uniform points of all free space, whatever the number of its connected parts.
+Uniform points of all free space of a grid, over all its connected components.
 
-A walk never leaves its part. So there is one in each part, in the uniform law from the beginning,
-and at every draw one of them moves on: that of a part picked with the probability of its area.
-Every draw, the first one too, is uniform on all free space, and no step is thrown away.
+A walk never leaves its component. So one chain runs in each component, started from the uniform
+law, and every draw advances one of them: the chain of a component chosen with probability
+proportional to its area. Every draw, the first included, is uniform on all free space.
 """
 
 from concurrent.futures import ThreadPoolExecutor
@@ -11,8 +11,8 @@ import math
 from typing import NamedTuple
 
 from hnr_planner.core.cancellation import Event, in_chunks
-from hnr_planner.core.checks import check_count, check_seed, Floats
-from hnr_planner.core.errors import SpaceError
+from hnr_planner.core.checks import check_count, check_seed, Floats, Seed
+from hnr_planner.core.errors import RequestError, SpaceError
 from hnr_planner.core.kernels.streams import Stream, stream, uniform
 from hnr_planner.core.sampling.chains import new_chain, run_chain
 from hnr_planner.core.sampling.walks import make_walk, Walk
@@ -20,35 +20,35 @@ from hnr_planner.core.spaces.grid.grid_space import GridSpace
 import numpy as np
 from numpy.typing import NDArray
 
-#: Steps between two looks at a cancellation: some hundredths of a second.
+#: Steps between two checks for cancellation: some hundredths of a second.
 STEPS_AT_ONCE = 2**16
 
 
 class FreeSpaceDraws(NamedTuple):
     """
-    Draws, with the number of the connected part that each lies in.
+    Draws, with the connected component of each.
 
     Attributes
     ----------
     points : (n_chains, n_draws, dim)
-        In the caller's frame.
-    parts : (n_chains, n_draws) int
-        From 1.
+        Points in the caller's frame.
+    components : (n_chains, n_draws) int
+        Number of the component that each point lies in, from 1.
     seed : int
-        The one used: with it the same call gives the same draws.
+        The seed used: with it the same call gives the same draws.
 
     """
 
     points: Floats
-    parts: NDArray[np.int32]
+    components: NDArray[np.int32]
     seed: int
 
     @property
     def previous(self) -> NDArray[np.intp]:
-        """Index (n_chains, n_draws) of the draw before in the same part; -1 for its first one."""
-        previous = np.full(self.parts.shape, -1)
-        for chain, parts in enumerate(self.parts):
-            for draws in _of_each_part(parts):
+        """Index (n_chains, n_draws) of the draw before in the same component; -1 for the first."""
+        previous = np.full(self.components.shape, -1)
+        for chain, components in enumerate(self.components):
+            for draws in _draws_by_component(components):
                 previous[chain, draws[1:]] = draws[:-1]
         return previous
 
@@ -60,14 +60,15 @@ def sample_free_space(
     walk: str | Walk = 'hit_and_run',
     n_chains: int = 1,
     thin: int = 1,
-    seed: int | None = None,
+    seed: Seed = None,
     cancel: Event | None = None,
 ) -> FreeSpaceDraws:
     """
     Draw points that are uniform on all free space of a grid.
 
-    Draws of one part are a chain: its first is an independent uniform point, each of the others
-    is ``thin`` steps away from the one before. Fewer draws are the first of more.
+    The draws in one component form a chain: the first is an independent uniform point, and each
+    later one is ``thin`` steps from the one before. A run with fewer draws is the beginning of a
+    run with more.
 
     Parameters
     ----------
@@ -76,32 +77,37 @@ def sample_free_space(
     n_draws : int
         Points of each chain.
     walk : str or Walk
-        How to step, as for ``sample``.
+        A name in ``WALKS``, or a walk with its settings.
     n_chains : int
-        Independent repetitions; each runs in a thread and with random streams of its own.
+        Independent repetitions; each runs in its own thread with its own random streams.
     thin : int
-        Steps from a draw to the next one in its part.
-    seed : int, optional
-        Fresh when left out.
+        Steps between consecutive draws in one component.
+    seed : int, numpy.random.SeedSequence, numpy.random.Generator or None
+        Fresh when left out. A generator is advanced, so that the next call gives other draws.
     cancel : Event, optional
         Ends the work when it is set.
 
     Raises
     ------
     RequestError
-        When an argument is malformed.
+        When an argument is malformed, or the space is not a grid.
     SpaceError
         When no cell is free.
     Cancelled
         When ``cancel`` was set.
     StuckError
-        When a walk does not move any more.
+        When a chain has not moved for 1000 steps.
 
     """
+    if not isinstance(space, GridSpace):
+        raise RequestError(
+            f'sample_free_space needs a GridSpace, whose components are known, got a '
+            f"{type(space).__name__}: sample(space, start, ...) draws from the start's component"
+        )
     n_draws = check_count('n_draws', n_draws, 1)
     n_chains = check_count('n_chains', n_chains, 1)
     thin = check_count('thin', thin, 1)
-    step = make_walk(walk).compiled(space)
+    compiled = make_walk(walk).compiled(space)
     seed = check_seed(seed)
     labels = space.data.labels
     free = np.flatnonzero(labels)
@@ -109,39 +115,39 @@ def sample_free_space(
         raise SpaceError('no cell is free')
 
     points = np.empty((n_chains, n_draws, space.dim))
-    parts = np.empty((n_chains, n_draws), dtype=np.int32)
+    components = np.empty((n_chains, n_draws), dtype=np.int32)
 
     def fill(chain: int) -> None:
         cells = pick_cells(free, n_draws, np.random.default_rng([seed, chain]))
-        parts[chain] = labels.flat[cells]
-        for draws in _of_each_part(parts[chain]):
-            first, rng = draws[0], stream(seed, chain, int(parts[chain, draws[0]]))
+        components[chain] = labels.flat[cells]
+        for draws in _draws_by_component(components[chain]):
+            first, rng = draws[0], stream(seed, chain, int(components[chain, draws[0]]))
             points[chain, first] = x = point_in_cell(cells[first], labels.shape, rng)
-            part = new_chain(space, x, rng)
-            moved = np.empty((len(draws) - 1, space.dim))
-            for some in in_chunks(len(moved), cancel, max(1, STEPS_AT_ONCE // thin)):
-                run_chain(space, step, part, thin, moved[some])
-            points[chain, draws[1:]] = moved
+            state = new_chain(space, x, rng)
+            later = np.empty((len(draws) - 1, space.dim))
+            for rows in in_chunks(len(later), cancel, max(1, STEPS_AT_ONCE // thin)):
+                run_chain(space, compiled, state, thin, later[rows])
+            points[chain, draws[1:]] = later
 
     with ThreadPoolExecutor() as pool:
         list(pool.map(fill, range(n_chains)))
-    return FreeSpaceDraws(space.from_kernel(points), parts, seed)
+    return FreeSpaceDraws(space.from_kernel(points), components, seed)
 
 
 def pick_cells(free: NDArray[np.intp], n_draws: int, rng: np.random.Generator) -> NDArray[np.intp]:
-    """Pick a free cell for each draw: it says in which part, and where that part starts."""
+    """Pick a uniform cell of ``free`` for each draw: its component, and where that starts."""
     return free[(rng.random(n_draws) * len(free)).astype(np.intp)]
 
 
 def point_in_cell(cell: int, shape: tuple[int, ...], rng: Stream) -> Floats:
-    """Draw a uniform point (2,) of a cell, kernel frame, which has one unit for a cell."""
+    """Draw a uniform point (2,) of a cell, in the kernel frame (units of cells)."""
     row, column = divmod(int(cell), shape[1])
     # Halfway between the multiples of 2^-32, where no sum rounds onto the edge of the cell.
     x, y = ((math.floor(uniform(rng) * 2**32) + 0.5) / 2**32 for _ in range(2))
     return np.array([column + x, row + y])
 
 
-def _of_each_part(parts: NDArray[np.int32]) -> list[NDArray[np.intp]]:
-    """Return the indices, ascending, of the draws of each part (n,) that has any."""
-    order = np.argsort(parts, kind='stable')
-    return np.split(order, 1 + np.flatnonzero(np.diff(parts[order])))
+def _draws_by_component(components: NDArray[np.int32]) -> list[NDArray[np.intp]]:
+    """Return the indices of the draws in each component that has any, given those of all (n,)."""
+    order = np.argsort(components, kind='stable')
+    return np.split(order, 1 + np.flatnonzero(np.diff(components[order])))

@@ -1,6 +1,6 @@
 """Uniform points of a space, by chains of a random walk."""
 
-from hnr_planner.core.checks import check_count, Floats
+from hnr_planner.core.checks import check_count, Floats, Seed
 from hnr_planner.core.sampling.chains import begin_chains, walk_on
 from hnr_planner.core.sampling.walks import Walk
 from hnr_planner.core.spaces.space import Space
@@ -16,33 +16,33 @@ def sample(
     n_chains: int = 1,
     burn_in: int = 0,
     thin: int = 1,
-    seed: int | None = None,
+    seed: Seed = None,
 ) -> Floats:
     """
-    Draw points that are uniform on the start's connected part of a space, in the long run.
+    Draw points from a random walk whose limit is the uniform law on the start's component.
 
-    Every chain walks in a thread and with a random stream of its own: the draws are the same
-    whatever the number of processors. ``begin_chains`` and ``walk_on`` do the same in parts, and
-    tell what was counted.
+    Every chain has its own thread and random stream, so that the draws do not depend on the
+    number of processors. ``begin_chains`` and ``walk_on`` give the same draws step by step, with
+    counts of steps and moves.
 
     Parameters
     ----------
     space : Space
         The set to draw from.
     start : (dim,) or (n_chains, dim)
-        A free point where all chains begin, or one for each.
+        One free point for all chains, or one for each chain.
     n_draws : int
-        Points kept of each chain.
+        Number of points kept of each chain.
     walk : 'hit_and_run', 'coordinate_hit_and_run', 'ball_walk' or a walk
-        How to step; a walk with settings is a value: ``BallWalk(radius=0.1)``.
+        The random walk; one with settings is a value: ``BallWalk(radius=0.1)``.
     n_chains : int
-        Independent chains.
+        Number of independent chains.
     burn_in : int
         Steps at the beginning of each chain that are not kept.
     thin : int
-        One point is kept of every ``thin`` steps.
-    seed : int, optional
-        Fresh when left out.
+        Steps for each point kept; the last one is kept.
+    seed : int, numpy.random.SeedSequence, numpy.random.Generator or None
+        Fresh when left out. A generator is advanced, so that the next call gives other draws.
 
     Returns
     -------
@@ -54,7 +54,7 @@ def sample(
     RequestError
         When an argument is malformed, or a start is not free.
     StuckError
-        When a chain does not move any more.
+        When a chain has not moved for 1000 steps.
 
     """
     burn_in = check_count('burn_in', burn_in, 0)

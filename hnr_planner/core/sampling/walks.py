@@ -1,12 +1,19 @@
 """
-The walks that chains take: each a value, and its step a small kernel.
+Random walks: how a chain takes one step.
 
-A walk is a frozen dataclass whose fields are its settings. For a space it gives a NamedTuple, by
-whose type compiled code finds the step.
+A walk is a frozen dataclass whose fields are its settings. ``compiled(space)`` turns it into a
+NamedTuple of numbers in the kernel frame, and the type of that NamedTuple selects the kernel of
+its step::
 
-The uniform law on the start's part of the space is stationary for all of them, and each step can
-be taken back with the same density (the paper's section 1; Lovasz and Simonovits, "Random walks in
-a convex body and an improved volume algorithm", 1993, for the ball walk).
+    take_step(walk, space, cache, u, rng, counts) -> moved
+
+The kernel either moves the chain at ``cache`` or leaves it, and returns which. It depends on its
+arguments only; module ``chains`` calls it in a loop, and counts steps and moves. A further walk is
+a dataclass, a NamedTuple, a kernel registered for that NamedTuple, and a line in ``_WALKS``.
+
+The uniform law on the component of the start is stationary for every walk here, and every step is
+reversible: its transition density is symmetric (paper, Section 1; for the ball walk: Lovasz and
+Simonovits, "Random walks in a convex body and an improved volume algorithm", 1993).
 """
 
 from dataclasses import dataclass
@@ -29,59 +36,60 @@ from hnr_planner.core.spaces.chain_cache import (
 from hnr_planner.core.spaces.primitives import first_exit
 from hnr_planner.core.spaces.space import Space
 
-#: What is counted of a chain, by column: steps taken; those that moved it; chords shorter than the
-#: space's margin; draws thrown away because they rounded onto the boundary; steps since it moved.
+#: Counters of a chain, by column: steps taken; steps that moved it; chords shorter than the
+#: space's margin; draws rejected because they rounded onto the boundary; steps since the last
+#: move.
 STEPS, MOVES, ZERO_CHORDS, REDRAWS, STILL = range(5)
 N_COUNTS = 5
 
 
 class Walk(Protocol):
-    """A walk: a name, and what its step needs in a space."""
+    """A random walk: its name, and the compiled form of its settings."""
 
     @property
     def name(self) -> str:
-        """Name in the table of walks."""
+        """Name in ``WALKS``."""
 
     def compiled(self, space: Space) -> Any:
-        """Return the NamedTuple that the step is found by, lengths in the kernel frame."""
+        """Return the NamedTuple that selects the step's kernel, lengths in the kernel frame."""
 
 
 @dataclass(frozen=True)
 class HitAndRunWalk:
-    """A uniform direction, and a uniform point on the chord (paper, section 1)."""
+    """Hit-and-Run: a uniform direction, then a uniform point of the chord (paper, Section 1)."""
 
     name = 'hit_and_run'
 
     def compiled(self, space: Space) -> Any:
-        """Return what the step needs."""
+        """Return the settings for the kernel, lengths in the kernel frame."""
         return HitAndRunStep(space.zero_length)
 
 
 @dataclass(frozen=True)
 class CoordinateHitAndRunWalk:
-    """One of the axes, each as likely as the others, and a uniform point on the chord."""
+    """Coordinate Hit-and-Run: a uniform coordinate axis, then a uniform point of the chord."""
 
     name = 'coordinate_hit_and_run'
 
     def compiled(self, space: Space) -> Any:
-        """Return what the step needs."""
+        """Return the settings for the kernel, lengths in the kernel frame."""
         return CoordinateHitAndRunStep(space.zero_length)
 
 
 @dataclass(frozen=True)
 class BallWalk:
     """
-    A uniform point of a ball around the chain's, taken if it is free and otherwise not.
+    Ball walk: a uniform point of the ball around the chain, accepted where it is free.
 
-    The walk of textbooks looks at the end point alone, and steps through walls that are thinner
-    than its radius. Where the segment has to be free as well, it moves as a robot could.
+    The textbook version tests the end point alone, and so steps through walls that are thinner
+    than its radius. With ``segment_visible`` the segment must be free too, as for a robot.
 
     Attributes
     ----------
     radius : float, optional
         Radius of the ball, in the caller's units. When left out, ``(dim + 1) / sqrt(dim)`` times
-        the space's typical clearance: in a ball of radius r that is r / sqrt(dim), the largest, up
-        to a factor, with which steps in high dimension are not mostly refused.
+        the space's typical clearance. In a ball of radius r that is r / sqrt(dim): up to a
+        factor, the largest radius whose steps are not mostly rejected in high dimensions.
     segment_visible : bool
         Whether the segment to the new point must be free too.
 
@@ -102,7 +110,7 @@ class BallWalk:
             check_positive('radius', self.radius)
 
     def compiled(self, space: Space) -> Any:
-        """Return what the step needs."""
+        """Return the settings for the kernel, lengths in the kernel frame."""
         if self.radius is None:
             radius = space.typical_clearance * (space.dim + 1) / math.sqrt(space.dim)
         else:
@@ -114,12 +122,12 @@ _WALKS: dict[str, Walk] = {
     walk.name: walk for walk in (HitAndRunWalk(), CoordinateHitAndRunWalk(), BallWalk())
 }
 
-#: Names of the walks, with their settings as they come.
+#: Names of the walks; each name stands for the walk with its default settings.
 WALKS = tuple(_WALKS)
 
 
 def make_walk(walk: str | Walk) -> Walk:
-    """Return the walk that a name or a value means, or raise RequestError."""
+    """Return the walk of a name in ``WALKS``, or the walk itself, or raise RequestError."""
     if isinstance(walk, str):
         return _WALKS[check_choice('walk', walk, WALKS)]
     if isinstance(walk, type) or not callable(getattr(walk, 'compiled', None)):
@@ -128,19 +136,19 @@ def make_walk(walk: str | Walk) -> Walk:
 
 
 class HitAndRunStep(NamedTuple):
-    """Hit-and-Run for kernels: the length below which a chord counts as none."""
+    """Hit-and-Run for kernels: chords shorter than ``margin`` count as zero chords."""
 
     margin: float
 
 
 class CoordinateHitAndRunStep(NamedTuple):
-    """Coordinate Hit-and-Run for kernels; likewise."""
+    """Coordinate Hit-and-Run for kernels: shorter chords than ``margin`` are zero chords."""
 
     margin: float
 
 
 class BallStep(NamedTuple):
-    """The ball walk for kernels: its settings."""
+    """Ball walk for kernels: radius in the kernel frame, and whether segments must be free."""
 
     radius: float
     segment_visible: bool
@@ -148,44 +156,75 @@ class BallStep(NamedTuple):
 
 @dispatched
 @inlined
-def take_step(walk: Any, space: Any, cache: Any, u: Any, rng: Any, counts: Any) -> None:
+def take_step(walk: Any, space: Any, cache: Any, u: Any, rng: Any, counts: Any) -> bool:
     """
-    Move the chain at ``cache`` once, or leave it where it is, and count which.
+    Take one step of a walk, and return whether the chain moved.
 
-    ``u`` (dim,) is room for a direction; it is zero before and after a step along an axis.
+    Parameters
+    ----------
+    walk : NamedTuple
+        Compiled settings, whose type selects the kernel.
+    space : NamedTuple
+        Compiled space.
+    cache : ChainCache or the space's own
+        Position of the chain, which the step changes.
+    u : (dim,)
+        Work array for the direction. Coordinate walks need it zero, and leave it zero.
+    rng : (4,) uint64
+        Random stream of the chain.
+    counts : (N_COUNTS,) int64
+        Counters; the step adds to ``ZERO_CHORDS`` and ``REDRAWS`` only.
+
     """
     raise NotImplementedError
 
 
 @take_step.register(HitAndRunStep)
 @inlined
-def _step_anywhere(walk, space, cache, u, rng, counts):
+def _hit_and_run(walk, space, cache, u, rng, counts):
+    """Move to a uniform point of the chord in a uniform direction."""
     draw_direction(rng, u)
-    _draw_on_chord(walk.margin, space, cache, u, NO_AXIS, rng, counts)
+    return _move_on_chord(walk.margin, space, cache, u, NO_AXIS, rng, counts)
 
 
 @take_step.register(CoordinateHitAndRunStep)
 @inlined
-def _step_along_an_axis(walk, space, cache, u, rng, counts):
+def _coordinate_hit_and_run(walk, space, cache, u, rng, counts):
+    """Move to a uniform point of the chord along a uniform axis."""
     axis = math.floor(uniform(rng) * len(u))
     u[axis] = 1.0
-    _draw_on_chord(walk.margin, space, cache, u, axis, rng, counts)
+    moved = _move_on_chord(walk.margin, space, cache, u, axis, rng, counts)
     u[axis] = 0.0
+    return moved
+
+
+@take_step.register(BallStep)
+@inlined
+def _ball_walk(walk, space, cache, u, rng, counts):
+    """Move to a uniform point of the ball, unless that or the segment to it is blocked."""
+    draw_in_ball(walk.radius, rng, u)
+    for i in range(len(u)):
+        cache.y[i] = cache.x[i] + u[i]
+    if walk.segment_visible and not first_exit(space, cache.x, u, 0.0, 1.0) > 1.0:
+        return False
+    if not move_if_free(space, cache):
+        return False
+    refresh(space, cache)
+    return True
 
 
 @inlined
-def _draw_on_chord(margin, space, cache, u, axis, rng, counts):
+def _move_on_chord(margin, space, cache, u, axis, rng, counts):
+    """Move to a uniform point of the chord along ``u``; return whether the chain moved."""
     lower, upper = chord_cached(space, cache, u, axis)
     if upper - lower >= margin:
-        if _draw_between(space, cache, u, axis, lower, upper, rng, counts):
-            _count_move(counts)
-    else:
-        _draw_on_zero_chord(space, cache, u, axis, lower, upper, rng, counts)
+        return _move_between(space, cache, u, axis, lower, upper, rng, counts)
+    return _move_on_zero_chord(space, cache, u, axis, lower, upper, rng, counts)
 
 
 @inlined
-def _draw_between(space, cache, u, axis, lower, upper, rng, counts):
-    """Move uniformly on the chord; draws that round onto the boundary are drawn again."""
+def _move_between(space, cache, u, axis, lower, upper, rng, counts):
+    """Move to ``x + s u``, s uniform in (lower, upper); draw again what rounds onto the ends."""
     for _ in range(REDRAWS_MAX):
         s = lower + (upper - lower) * uniform(rng)
         if lower < s < upper and move_along(space, cache, u, axis, s):
@@ -195,31 +234,12 @@ def _draw_between(space, cache, u, axis, lower, upper, rng, counts):
 
 
 @kernel
-def _draw_on_zero_chord(space, cache, u, axis, lower, upper, rng, counts):
-    """Draw on a chord that may be too short for any number but the point itself."""
+def _move_on_zero_chord(space, cache, u, axis, lower, upper, rng, counts):
+    """Move on a chord so short that the only free number on it may be the point itself."""
     counts[ZERO_CHORDS] += 1
     before = cache.x.copy()
-    _draw_between(space, cache, u, axis, lower, upper, rng, counts)
+    _move_between(space, cache, u, axis, lower, upper, rng, counts)
     for i in range(len(before)):
         if cache.x[i] != before[i]:
-            _count_move(counts)
-            return
-
-
-@take_step.register(BallStep)
-@inlined
-def _step_in_the_ball(walk, space, cache, u, rng, counts):
-    draw_in_ball(walk.radius, rng, u)
-    for i in range(len(u)):
-        cache.y[i] = cache.x[i] + u[i]
-    if walk.segment_visible and not first_exit(space, cache.x, u, 0.0, 1.0) > 1.0:
-        return
-    if move_if_free(space, cache):
-        refresh(space, cache)
-        _count_move(counts)
-
-
-@inlined
-def _count_move(counts):
-    counts[MOVES] += 1
-    counts[STILL] = 0
+            return True
+    return False

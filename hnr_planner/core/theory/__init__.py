@@ -1,10 +1,29 @@
 """
-The quantities of the paper, computed: where a step goes, how sets are shaped, how fast walks mix.
+The quantities of the paper, computed: the law of a step, the shape of sets, mixing.
 
 Source: Abbasi-Yadkori, Bartlett, Gabillon and Malek, "Hit-and-Run for Sampling and Planning in
-Non-Convex Spaces" (2016). Its lemmas and equations are counted as in the arXiv text: Lemma 8 to 10
-on cross-ratios, 11 on views, 12 on total variation, 13 on conductance, Theorem 5 on mixing.
-``docs/theory.md`` says what each quantity gives on example sets, and what is wrong in the paper.
+Non-Convex Spaces" (2016). Sigma is the set, n its dimension. Lemmas and equations are numbered as
+in the arXiv text: Lemmas 8 to 10 on cross-ratios, 11 on views, 12 on total variation, 13 on
+conductance, Theorem 5 on mixing. ``docs/theory.md`` has values on example sets, and the errors of
+the paper.
+
+========================  =============================================================
+module                    quantity
+========================  =============================================================
+``density``               transition density f_u of a step (equation (2))
+``step``                  step probability P_u(A), step length F(u), overlap of two steps
+``view``                  the points visible from a point (Section 3.1)
+``cross_ratio``           cross-ratio distance d_Sigma (Definition 1)
+``chain_distance``        chain distance d-tilde (Definition 2)
+``links``                 link diameter tau (Definition 2)
+``curvature``             curvature kappa (Assumption 3)
+``boundary_ratio``        boundary ratio R_epsilon (Definition 3)
+``conductance``           conductance Phi (Section 3.1)
+``bounds``                the bounds on Phi and on the mixing time (Lemmas 6 to 13)
+``embedding``             what the bounds need of the image of a disc (Assumption 2)
+``path_length``           transitions of a walk into a goal (Section 1)
+``rays``, ``corners``     quadrature over directions, and kinks of the boundary
+========================  =============================================================
 
 >>> disc = BallSpace((0, 0), 1)
 >>> cross_ratio_distance(disc, (-0.5, 0), (0.5, 0))

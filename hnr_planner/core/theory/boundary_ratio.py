@@ -1,4 +1,9 @@
-"""R_epsilon: how unequal the distances to a convex boundary are (paper, Definition 3)."""
+"""
+Boundary ratio R_epsilon: asymmetry of the boundary around points of a convex set.
+
+Definition (paper, Definition 3): the largest |x - b| / |x - c| over points x at distance epsilon
+or more from the boundary, where b is the nearer end of a chord through x and c any boundary point.
+"""
 
 import math
 
@@ -13,8 +18,8 @@ def boundary_ratio(space: Space, x: ArrayLike, n_directions: int = 4096) -> floa
     """
     Return the largest |x - b| / |x - c| at one point of a convex set in 2 or 3 dimensions.
 
-    b is the nearer end of a chord through ``x`` (dim,), c any boundary point. It is at least 1:
-    c = b is allowed. The paper's R is the largest over a subset of points x.
+    b is the nearer end of a chord through ``x`` (dim,), c any boundary point. The ratio is at
+    least 1, since c = b is allowed. The paper's R_epsilon is its supremum over points x.
     """
     x = check_point('x', x, space.dim)
     directions, _ = half_sphere(x, n_directions, space)
@@ -25,9 +30,9 @@ def boundary_ratio(space: Space, x: ArrayLike, n_directions: int = 4096) -> floa
 
 def ball_boundary_ratio(radius: float, epsilon: float) -> float:
     """
-    R_epsilon of a ball, in any dimension: sqrt(2 radius / epsilon - 1).
+    Return R_epsilon of a ball in any dimension: sqrt(2 radius / epsilon - 1).
 
-    At distance epsilon from the sphere the nearer end of a chord is farthest when the chord stands
-    across the radius: sqrt(epsilon (2 radius - epsilon)) away, and the sphere epsilon.
+    At distance epsilon from the sphere, the nearer end of a chord is farthest when the chord is
+    perpendicular to the radius: sqrt(epsilon (2 radius - epsilon)).
     """
     return math.sqrt(2.0 * radius / epsilon - 1.0)

@@ -1,13 +1,15 @@
 """
-The paper's chain of bounds: from the shape of a set to a mixing time, as printed and mended.
+The paper's bounds: from the shape of a set to conductance and mixing time (Lemmas 6 to 13).
 
-Lemma 13 bounds the conductance of Hit-and-Run on Sigma = g(Omega) from below, where Omega is a
-ball and g keeps volume (Assumption 2). As printed it has three slips, and its proof has gaps;
-``docs/theory.md`` says which. So there are three versions of it:
+Lemma 13 bounds the conductance Phi of Hit-and-Run on Sigma = g(Omega) from below, where Omega is a
+ball and g preserves volume (Assumption 2). As printed, the formula has three errors and its proof
+has gaps, which ``docs/theory.md`` lists. So there are three versions of it:
 
 - ``printed``: the formula as it stands;
-- ``corrected``: its units put right, and two factors that the proof loses on the way;
-- ``mended``: besides, what the proof needs where a step of it fails.
+- ``corrected``: with correct units, and with two factors that the proof loses;
+- ``mended``: also with what the proof needs where one of its steps fails.
+
+Lemma 6 turns a bound on Phi into a number of steps: ``mixing_bound``.
 """
 
 from dataclasses import dataclass
@@ -22,20 +24,20 @@ SIN_8 = math.sin(math.pi / 8.0)
 @dataclass(frozen=True)
 class BallImage:
     """
-    What the bounds have to know of a set that is the image of a ball.
+    Parameters of the bounds for a set that is the image of a ball.
 
     Attributes
     ----------
     dim : int
         Dimension n.
     radius : float
-        r, of the ball [m].
+        Radius r of the ball [m].
     diameter : float
-        D_Sigma, of the image [m].
+        Diameter D_Sigma of the image [m].
     stretch, shrink : float
-        L_Sigma and L_Omega: Lipschitz constants of the map and of its inverse.
+        Lipschitz constants of the map (L_Sigma) and of its inverse (L_Omega).
     kappa : float
-        Curvature of the image (Assumption 3).
+        Curvature of the image (Assumption 3), without unit.
 
     """
 
@@ -69,67 +71,80 @@ def ratio_inequality(ratio: float) -> float:
 
 
 def lipschitz_factor(image: BallImage, epsilon: float) -> float:
-    """Return how often d-tilde on Sigma can hold d on Omega, epsilon inside (Lemma 10)."""
+    """Return the largest ratio of d on Omega to d-tilde on Sigma, epsilon inside (Lemma 10)."""
     ratio = ball_boundary_ratio(image.radius, epsilon)
     return (image.stretch * image.shrink) ** 2 / ratio_inequality(ratio)
 
 
-def view_bound(kappa: float, apart: float, epsilon: float) -> float:
-    """Bound max(4/pi, kappa / sin(pi/8)) epsilon'/epsilon on what one point misses (Lemma 11)."""
-    return max(4.0 / math.pi, kappa / SIN_8) * apart / epsilon
-
-
-def mended_view_bound(dim: int, kappa: float, apart: float, epsilon: float) -> float:
+def view_bound(kappa: float, distance: float, epsilon: float) -> float:
     """
-    Lemma 11 with two steps of its proof put right.
+    Return the bound of Lemma 11 on the probability that a step from u is not visible from v.
+
+    It is max(4/pi, kappa / sin(pi/8)) |u - v| / epsilon, for u and v at least ``epsilon`` from the
+    boundary and ``distance`` from each other [m].
+    """
+    return max(4.0 / math.pi, kappa / SIN_8) * distance / epsilon
+
+
+def mended_view_bound(dim: int, kappa: float, distance: float, epsilon: float) -> float:
+    """
+    Return the bound of Lemma 11 with two steps of its proof corrected.
 
     An angle is at most pi/2 times its sine; and a uniform line through u makes the angle t with
     [u, v] with density c sin(t)^(n-2), not 1/pi: c pi is 1 in the plane and grows like sqrt(n).
     """
     log_peak = math.lgamma(dim / 2.0) - math.lgamma((dim - 1) / 2.0)
     peak = math.sqrt(math.pi) * math.exp(log_peak)
-    return math.pi / 2.0 * peak * view_bound(kappa, apart, epsilon)
+    return math.pi / 2.0 * peak * view_bound(kappa, distance, epsilon)
 
 
 def variation_bound(epsilon: float, diameter: float) -> float:
-    """Bound 1 - epsilon / (8 e^4 D) on the total variation distance of two steps (Lemma 12)."""
+    """Return 1 - epsilon / (8 e^4 D): the bound of Lemma 12 on the distance of two steps' laws."""
     return 1.0 - epsilon / (8.0 * math.exp(4.0) * diameter)
 
 
 def printed_conductance(image: BallImage) -> float:
-    """Lemma 13 as printed: (delta/4) (2/(5 n D) ^ N (1/(24 D) ^ (2/sqrt n)(1/(8 sqrt n) ^ G)))."""
-    n, turn = image.dim, _closeness(image.kappa)
+    """
+    Return the bound of Lemma 13 on Phi, as printed.
+
+    (delta/4) min(2/(5 n D), N min(1/(24 D), (2/sqrt n) min(1/(8 sqrt n), G))).
+    """
+    n, closeness = image.dim, _closeness(image.kappa)
     delta = image.depth / (16.0 * math.exp(4.0) * image.diameter)
     scale = image.depth / image.ratio_bound
-    near = 2.0 / math.sqrt(n) * min(1.0 / (8.0 * math.sqrt(n)), turn)
+    near = 2.0 / math.sqrt(n) * min(1.0 / (8.0 * math.sqrt(n)), closeness)
     first = 2.0 / (5.0 * n * 2.0 * image.radius)
     return delta / 4.0 * min(first, scale * min(1.0 / (24.0 * image.diameter), near))
 
 
 def corrected_conductance(image: BallImage) -> float:
-    """Lemma 13 with r for 2 in the first branch, 4/D for 2/sqrt n, and delta/24 for delta/4."""
-    n, turn = image.dim, _closeness(image.kappa)
+    """
+    Return the bound of Lemma 13 on Phi, with the three errors of the formula corrected.
+
+    r replaces 2 in the first branch, 4/D replaces 2/sqrt n, and delta/24 replaces delta/4.
+    """
+    n, closeness = image.dim, _closeness(image.kappa)
     delta = image.depth / (16.0 * math.exp(4.0) * image.diameter)
     scale = image.depth / image.ratio_bound
-    near = 4.0 / image.diameter * min(1.0 / (8.0 * math.sqrt(n)), turn)
+    near = 4.0 / image.diameter * min(1.0 / (8.0 * math.sqrt(n)), closeness)
     first = image.radius / (5.0 * n * 2.0 * image.radius)
     return delta / 24.0 * min(first, scale * min(1.0 / (24.0 * image.diameter), near))
 
 
 def mended_conductance(image: BallImage) -> float:
     """
-    Lemma 13 with its proof mended where we saw it fail, but for one gap.
+    Return the bound of Lemma 13 on Phi, with its proof mended but for one gap.
 
-    Besides ``corrected_conductance``: e^6 for e^4, since the cap of Lemma 12 has to be cut at
-    2/sqrt n; the views of ``mended_view_bound``; and, since d-tilde <= d_Sigma, the second branch
-    by way of the distance: d_Sigma >= e/(24 D) at depth e makes |u - v| >= e^2/(72 D), and so
-    d-tilde >= e^2/(18 D^2).
+    Besides the corrections of ``corrected_conductance``: e^6 replaces e^4, since the cap of
+    Lemma 12 has to be cut at 2/sqrt n; Lemma 11 is that of ``mended_view_bound``; and, since
+    d-tilde <= d_Sigma, the second branch uses the distance: d_Sigma >= e/(24 D) at depth e makes
+    |u - v| >= e^2/(72 D), and so d-tilde >= e^2/(18 D^2).
     """
     n = image.dim
-    turn = 1.0 / (6.0 * mended_view_bound(n, image.kappa, 1.0, 1.0))
+    closeness = 1.0 / (6.0 * mended_view_bound(n, image.kappa, 1.0, 1.0))
     delta = image.depth / (16.0 * math.exp(6.0) * image.diameter)
     scale = image.depth / image.ratio_bound
-    near = 4.0 / image.diameter * min(1.0 / (8.0 * math.sqrt(n)), turn)
+    near = 4.0 / image.diameter * min(1.0 / (8.0 * math.sqrt(n)), closeness)
     far = image.depth / (18.0 * image.diameter**2)
     first = image.radius / (5.0 * n * 2.0 * image.radius)
     return delta / 24.0 * min(first, scale * min(far, near))
@@ -139,8 +154,9 @@ def mixing_bound(conductance: float, warmth: float, epsilon: float) -> float:
     """
     Return the steps until every set has its probability to within ``epsilon`` (Lemma 6).
 
-    The first t with sqrt(M) (1 - Phi^2 / 2)^t <= epsilon, where the ``warmth`` M bounds the
-    density at the start. It is infinite for a start at a point, and until the n-th step from one.
+    The first t with sqrt(M) (1 - Phi^2 / 2)^t <= epsilon. The ``warmth`` M bounds the density of
+    the start relative to the uniform one. It is infinite for a start at a point, and stays so
+    for the first n steps.
     """
     return math.log(math.sqrt(warmth) / epsilon) / -math.log1p(-(conductance**2) / 2.0)
 

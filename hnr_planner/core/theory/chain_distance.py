@@ -1,15 +1,17 @@
 """
-The distance by way of others: d-tilde of the paper (Definition 2), between bounds.
+Chain distance d-tilde(u, v) of two points, bracketed by bounds.
 
-d-tilde is the least sum of cross-ratio distances over chains u, z_1, ..., v of ``n_links``
-segments in the set (tau of them, for a tau-best set). On a chord the parts sum up to less than
-the whole, so more links always give less, also between points that see each other, and in the
-limit a path costs Hilbert's length: the integral of ds (1/|x - a| + 1/|x - b|) over it, where a
-and b end the chord along it. A segment costs log(1 + d) then.
+Definition (paper, Definition 2): the infimum, over chains u, z_1, ..., v of tau segments in the
+set, of the sum of the cross-ratio distances of the segments. Here tau is ``n_links``.
 
-With k links of total Hilbert length H the sum of the k distances is at least k (exp(H / k) - 1),
-as exp is convex; equal parts reach it. In a convex set no detour is shorter, and d-tilde is
-exactly k ((1 + d)^(1/k) - 1).
+On one chord the distances of subsegments sum to less than the distance of the ends. So more links
+always give less, also between mutually visible points. In the limit of many links a path costs its
+Hilbert length: the integral of ds (1/|x - a| + 1/|x - b|), where a and b are the ends of the chord
+along the path; a segment costs log(1 + d).
+
+With k links of total Hilbert length H, the sum of the k distances is at least k (exp(H / k) - 1),
+since exp is convex; equal subsegments attain it. In a convex set no detour is shorter, and d-tilde
+is exactly k ((1 + d)^(1/k) - 1).
 """
 
 import math
@@ -26,12 +28,12 @@ from scipy.optimize import minimize
 from scipy.sparse.csgraph import dijkstra
 from scipy.spatial import ConvexHull
 
-#: Points of the set that a chain may pass, on a lattice or random, before it is improved.
+#: Number of random points of the set that a chain may pass before it is improved.
 N_POINTS = 400
 
 
 class Bounds(NamedTuple):
-    """A number between two others."""
+    """Lower and upper bound of a number."""
 
     lower: float
     upper: float
@@ -39,16 +41,17 @@ class Bounds(NamedTuple):
 
 def even_chain_distance(ratio: float, n_links: float = math.inf) -> float:
     """
-    Return the sum of cross-ratio distances that even parts of one segment have.
+    Return the sum of the cross-ratio distances of the equal subsegments of one segment.
 
-    It is d-tilde in convex sets, and a bound from above for points that see each other elsewhere.
+    It equals d-tilde in convex sets, and bounds it from above for mutually visible points in
+    other sets.
 
     Parameters
     ----------
     ratio : float
         Cross-ratio distance of the ends.
     n_links : float
-        Number of parts; infinite for the limit log(1 + d).
+        Number of subsegments; infinite for the limit log(1 + d).
 
     """
     return _total(math.log1p(ratio), n_links)
@@ -58,10 +61,10 @@ def chain_distance(
     space: Space, u: ArrayLike, v: ArrayLike, n_links: float = math.inf, *, seed: int = 0
 ) -> Bounds:
     """
-    Bounds on d-tilde of two points of a set in the plane.
+    Return bounds on d-tilde of two points of a set in the plane.
 
-    From above: the best chain over points of the set, improved in continuous space. From below:
-    every segment costs at least 4 |u - v| / D, and at least what it costs in the convex hull.
+    Upper bound: the best chain over points of the set, after continuous optimization. Lower bound:
+    every segment costs at least 4 |u - v| / D, and at least its cost in the convex hull.
 
     Parameters
     ----------
@@ -70,9 +73,9 @@ def chain_distance(
     u, v : (2,)
         Free points.
     n_links : float
-        How many segments a chain has; infinite for the limit.
+        Number of segments of a chain; infinite for the limit.
     seed : int
-        Of the points that chains may pass at first.
+        Seed of the random points that chains may pass at first.
 
     """
     if space.dim != 2:
@@ -96,13 +99,13 @@ def chain_distance(
 
 
 def chain_cost(space: Space, chain: Floats, n_links: float) -> float:
-    """Sum of the cross-ratio distances along a chain (m, dim), or its limit; inf if blocked."""
+    """Return the cost of a chain (m, dim): the sum of distances, or its limit; inf if blocked."""
     ratios = cross_ratio_distance(space, chain[:-1], chain[1:])
     return float((hilbert_distance(ratios) if n_links == math.inf else ratios).sum())
 
 
 def hull_of(space: Space) -> Space:
-    """Return the convex hull of a set in the plane; where its corners are unknown, its bounds."""
+    """Return the convex hull of a set in the plane, or its bounds where no corners are known."""
     if isinstance(space, BallSpace | BoxSpace | PolytopeSpace):
         return space
     points = corners(space).points
@@ -113,18 +116,19 @@ def hull_of(space: Space) -> Space:
 
 
 def _total(hilbert: float, n_links: float) -> float:
-    """Sum of the distances of even parts of a segment of this Hilbert length."""
+    """Return the sum of the distances of equal subsegments with this total Hilbert length."""
     return hilbert if n_links == math.inf else n_links * math.expm1(hilbert / n_links)
 
 
 def _scattered(space: Space, seed: int) -> Floats:
-    """Points (k, 2) of the set, uniform over its bounds."""
+    """Return up to ``N_POINTS`` uniform points (k, 2) of the set."""
     rng = np.random.default_rng(seed)
     drawn = rng.uniform(*space.bounds, size=(20 * N_POINTS, 2))
     return drawn[space.contains(drawn)][:N_POINTS]
 
 
 def _diameter(hull: Space) -> float:
+    """Return the diameter of a convex set [m]."""
     if isinstance(hull, BallSpace):
         return 2.0 * hull.radius
     points = corners(hull).points
@@ -132,7 +136,7 @@ def _diameter(hull: Space) -> float:
 
 
 def _pairwise(space: Space, nodes: Floats) -> Floats:
-    """Cross-ratio distances (k, k) of points (k, 2); inf where they do not see each other."""
+    """Return the cross-ratio distances (k, k) of points (k, 2); inf where not visible."""
     first, second = np.triu_indices(len(nodes), 1)
     ratios = np.zeros((len(nodes), len(nodes)))
     ratios[first, second] = cross_ratio_distance(space, nodes[first], nodes[second])
@@ -140,19 +144,19 @@ def _pairwise(space: Space, nodes: Floats) -> Floats:
 
 
 def _shortest_length(nodes: Floats, ratios: Floats) -> float:
-    """Length of the shortest path from the first node to the second, turning at the others."""
+    """Return the length of the shortest path from the first node to the second [m]."""
     straight = float(np.linalg.norm(nodes[1] - nodes[0]))
     if len(nodes) == 2:
         return straight
-    seen = np.isfinite(ratios)
-    lengths = np.where(seen, np.linalg.norm(nodes[:, None] - nodes, axis=2), 0.0)
+    visible = np.isfinite(ratios)
+    lengths = np.where(visible, np.linalg.norm(nodes[:, None] - nodes, axis=2), 0.0)
     found = float(dijkstra(lengths, indices=0)[1])
-    # Turning beside a corner instead of at it makes it a little longer than the shortest.
+    # The path turns beside corners, not at them, and so is slightly longer than the shortest.
     return max(straight, found * (1.0 - 1e-6)) if math.isfinite(found) else straight
 
 
 def _best_chain(nodes: Floats, ratios: Floats, n_links: float) -> Floats | None:
-    """Return the best chain (m, 2) from the first node to the second over the others."""
+    """Return the cheapest chain (m, 2) from the first node to the second, or None."""
     if n_links == math.inf:
         costs = np.where(np.isfinite(ratios), np.log1p(np.minimum(ratios, 1e300)), 0.0)
         total, before = dijkstra(costs, indices=0, return_predecessors=True)
@@ -174,7 +178,7 @@ def _best_chain(nodes: Floats, ratios: Floats, n_links: float) -> Floats | None:
 
 
 def _improved(space: Space, chain: Floats, n_links: float) -> float:
-    """Cost of a chain after its inner points have been moved to where they cost least."""
+    """Return the cost of a chain after its inner points have been optimized."""
     cost = chain_cost(space, chain, n_links)
     if len(chain) == 2:
         return cost

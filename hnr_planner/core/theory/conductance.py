@@ -1,9 +1,13 @@
 """
-Conductance: how narrow the narrowest passage of Hit-and-Run is (paper, Section 3.1, Phi).
+Conductance Phi of Hit-and-Run: the relative flow across the narrowest cut of a set.
 
-A step from a uniform point draws a line, and two points of one chord of it. So the flow from A to
-B in one step is a mean over lines: of |chord in A| |chord in B| / |chord|, summed over the line's
-chords. Its measure on lines is invariant, which makes the flow symmetric, and easy to sum up.
+Definition (paper, Section 3.1): the infimum over subsets A of at most half the volume of the
+probability that a step from a uniform point of A leaves A.
+
+A step from a uniform point amounts to a uniform line and two independent uniform points of one of
+its chords. So the flow from A to B in one step is a mean over lines: the sum over the line's
+chords of |chord in A| |chord in B| / |chord|. The measure on lines is invariant under motions, and
+the flow is symmetric.
 """
 
 import math
@@ -18,25 +22,25 @@ from hnr_planner.core.theory.rays import lengths_within, pieces
 import numpy as np
 from numpy.typing import NDArray
 
-#: Steps of the lattice of lines: its two coordinates are multiples of these modulo 1 (the powers
-#: of the inverse of the plastic number: Roberts's R2, a lattice without resonances).
+#: The plastic number. Its inverse powers, times k modulo 1, are the coordinates of line k:
+#: Roberts's quasirandom sequence R2.
 PLASTIC = 1.324717957244746
-#: Lines cut at once.
+#: Number of lines in one call of the kernel.
 BATCH = 1 << 18
 
 
 class CellFlow(NamedTuple):
     """
-    Flow of one step between the cells of a lattice over a set, in the stationary law.
+    Flow of one stationary step between the cells of a lattice over a set.
 
     Attributes
     ----------
     area : (m,)
-        Area of the set in each cell; empty cells are left out.
+        Area of the set in each cell [m^2]; empty cells are omitted.
     flow : (m, m)
-        Area that goes from cell to cell in a step: symmetric, with ``area`` as its row sums.
+        Flow between cells in one step [m^2]: symmetric, with ``area`` as its row sums.
     centre : (m, 2)
-        Centre of each cell.
+        Centre of each cell [m].
 
     """
 
@@ -46,31 +50,31 @@ class CellFlow(NamedTuple):
 
     @property
     def kernel(self) -> Floats:
-        """Probability (m, m) of a step to each cell from a uniform point of each."""
+        """Transition probabilities (m, m) from a uniform point of one cell to each cell."""
         return self.flow / self.area[:, None]
 
     @property
     def relaxation_time(self) -> float:
         """
-        Steps that the slowest deviation from uniformity takes to fade: 1 / spectral gap.
+        Relaxation time [steps]: 1 / spectral gap of the chain of cells.
 
-        That of the chain that forgets its place within the cell at every step: never more than
-        the true one, and nearer to it the finer the cells (its kernel is a projection of the true
-        one).
+        This chain forgets its position within the cell at every step. Its kernel is a projection
+        of the true one, so that its relaxation time is never above the true one, and nearer to
+        it the finer the cells.
         """
-        return 1.0 / (1.0 - _slowest(self)[0])
+        return 1.0 / (1.0 - _second_eigenpair(self)[0])
 
 
 class Cut(NamedTuple):
     """
-    A cut of a set in two and the conductance across it.
+    A partition of a set in two sides, and its conductance.
 
     Attributes
     ----------
     inside : (m,) bool
         Cells on one side.
     conductance : float
-        Flow across, by the area of the smaller side.
+        Flow across the cut over the area of the smaller side.
 
     """
 
@@ -79,7 +83,7 @@ class Cut(NamedTuple):
 
 
 class Estimate(NamedTuple):
-    """A mean over random draws, with its standard error."""
+    """A mean over random draws and its standard error."""
 
     value: float
     error: float
@@ -87,16 +91,16 @@ class Estimate(NamedTuple):
 
 def cell_flow(space: Space, shape: tuple[int, int], n_lines: int = 1 << 20) -> CellFlow:
     """
-    Return the flow between the cells of a lattice over a set in the plane.
+    Return the flow of one step between the cells of a lattice over a set in the plane.
 
     Parameters
     ----------
     space : Space
         The set.
     shape : (rows, columns)
-        Cells that the bounds are cut into.
+        Number of cells that the bounds are divided into.
     n_lines : int
-        Lines of the quadrature, on a lattice over angle and offset.
+        Number of lines of the quadrature over angle and offset.
 
     """
     if space.dim != 2:
@@ -131,18 +135,18 @@ def cell_flow(space: Space, shape: tuple[int, int], n_lines: int = 1 << 20) -> C
 
 def best_cut(flow: CellFlow) -> Cut:
     """
-    Return the best cut along the slowest eigenvector: a bound on the conductance from above.
+    Return the best cut along the second eigenvector: an upper bound on the conductance.
 
-    Together with half the spectral gap, from below, this is the bracket of Cheeger's inequality:
+    With half the spectral gap as the lower bound this is the bracket of Cheeger's inequality:
     gap / 2 <= Phi <= cut (Lawler and Sokal 1988).
     """
-    _, vector = _slowest(flow)
+    _, vector = _second_eigenpair(flow)
     order = np.argsort(vector)
     ordered = flow.flow[np.ix_(order, order)]
-    # Across the cut after k cells: what leaves the first k in all, less what stays among them.
+    # Flow across the cut after k cells: the area of these cells less the flow among them.
     area = np.cumsum(flow.area[order])[:-1]
-    stays = np.cumsum(np.cumsum(ordered, axis=0), axis=1).diagonal()[:-1]
-    sweep = (area - stays) / np.minimum(area, flow.area.sum() - area)
+    within = np.cumsum(np.cumsum(ordered, axis=0), axis=1).diagonal()[:-1]
+    sweep = (area - within) / np.minimum(area, flow.area.sum() - area)
     k = int(np.argmin(sweep))
     inside = np.zeros(len(order), dtype=np.bool_)
     inside[order[: k + 1]] = True
@@ -151,18 +155,18 @@ def best_cut(flow: CellFlow) -> Cut:
 
 def cut_conductance(space: Space, side: Space, n_lines: int, seed: int) -> Estimate:
     """
-    Estimate the conductance of the cut of a space of any dimension by another.
+    Estimate the conductance of the cut of a space of any dimension by another space.
 
     Parameters
     ----------
     space : Space
         The set.
     side : Space
-        Its part in the space is one side of the cut.
+        Its intersection with the set is one side of the cut.
     n_lines : int
-        Lines through the ball around the bounds.
+        Number of random lines through the ball around the bounds.
     seed : int
-        Of the lines.
+        Seed of the lines.
 
     """
     rng = np.random.default_rng(seed)
@@ -187,8 +191,8 @@ def cut_conductance(space: Space, side: Space, n_lines: int, seed: int) -> Estim
     return Estimate(float(value), float(error))
 
 
-def _slowest(flow: CellFlow) -> tuple[float, Floats]:
-    """Second largest eigenvalue of the kernel, and its right eigenvector (m,)."""
+def _second_eigenpair(flow: CellFlow) -> tuple[float, Floats]:
+    """Return the second largest eigenvalue of the kernel, and its right eigenvector (m,)."""
     root = np.sqrt(flow.area)
     values, vectors = np.linalg.eigh(flow.flow / np.outer(root, root))
     return float(values[-2]), vectors[:, -2] / root
@@ -196,7 +200,7 @@ def _slowest(flow: CellFlow) -> tuple[float, Floats]:
 
 @kernel
 def _add_chords(points, directions, begin, end, rows, columns, flow, area):
-    """Add the chords ``point + s direction``, begin < s < end, in units of cells."""
+    """Add the flow and area of chords ``point + s direction``, begin < s < end [cells]."""
     flow, area = borrowed(flow), borrowed(area)
     cells = np.empty(2 * (rows + columns) + 4, dtype=np.int64)
     lengths = np.empty(len(cells))
@@ -204,16 +208,16 @@ def _add_chords(points, directions, begin, end, rows, columns, flow, area):
         n_cells = _cross_cells(
             points[k], directions[k], begin[k], end[k], rows, columns, cells, lengths
         )
-        whole = end[k] - begin[k]
+        length = end[k] - begin[k]
         for i in range(n_cells):
             area[cells[i]] += lengths[i]
             for j in range(n_cells):
-                flow[cells[i], cells[j]] += lengths[i] * lengths[j] / whole
+                flow[cells[i], cells[j]] += lengths[i] * lengths[j] / length
 
 
 @kernel
 def _cross_cells(x, u, begin, end, rows, columns, cells, lengths):
-    """Write down which cells a chord crosses, and how long it is in each; return how many."""
+    """Write the cells that a chord crosses and its length in each; return their number."""
     n_cells = 0
     s = begin
     while s < end and n_cells < len(cells):

@@ -1,4 +1,9 @@
-"""Corners of the boundary in the plane: where chords, views and shortest paths have kinks."""
+"""
+Corners of the boundary of sets in the plane.
+
+They are the kinks of chord lengths as functions of the angle, the ends of a view's walls, and the
+turning points of shortest paths.
+"""
 
 import itertools
 from typing import NamedTuple
@@ -9,7 +14,8 @@ import numpy as np
 from shapely import get_parts
 from shapely.geometry.polygon import orient
 
-#: How far beside a corner a path may turn, as a part of the bounds' diagonal.
+#: Distance between a corner and the point where a path turns, as a fraction of the diagonal of the
+#: bounds.
 BESIDE = 1e-7
 
 
@@ -20,9 +26,9 @@ class Corners(NamedTuple):
     Attributes
     ----------
     points : (k, 2)
-        All of them. None means that the boundary is smooth, or that nobody knows its corners.
+        All corners; none where the boundary is smooth or its corners are unknown.
     turns : (m, 2)
-        Free points just beside those that reach into the set, at which shortest paths turn.
+        Free points just beside the reflex corners, at which shortest paths turn.
 
     """
 
@@ -45,7 +51,7 @@ def corners(space: Space) -> Corners:
 
 
 def _grid_corners(space: GridSpace) -> Corners:
-    """Grid points around which blocked cells are neither none, nor a side, nor all."""
+    """Return the lattice points around which blocked cells are not none, one side or all."""
     blocked = np.pad(space.blocked, 1, constant_values=True)
     around = np.stack([blocked[:-1, :-1], blocked[:-1, 1:], blocked[1:, :-1], blocked[1:, 1:]])
     count = around.sum(axis=0)
@@ -61,7 +67,7 @@ def _grid_corners(space: GridSpace) -> Corners:
 
 
 def _polygon_corners(space: PolygonSpace) -> Corners:
-    """Vertices of the rings, and points beside those at which a ring turns to the right."""
+    """Return the vertices of the rings, and points beside those where a ring turns right."""
     lower, upper = space.bounds
     beside = BESIDE * float(np.linalg.norm(upper - lower))
     points, turns = [], []
@@ -81,7 +87,7 @@ def _polygon_corners(space: PolygonSpace) -> Corners:
 
 
 def _polytope_corners(normals: Floats, offsets: Floats) -> Floats:
-    """Points where two of the lines meet and no other cuts them off."""
+    """Return the intersections (k, 2) of two lines that satisfy all other inequalities."""
     found = []
     for i, j in itertools.combinations(range(len(offsets)), 2):
         if abs(np.linalg.det(normals[[i, j]])) > 1e-12:

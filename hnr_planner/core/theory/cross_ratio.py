@@ -1,4 +1,9 @@
-"""The cross-ratio distance of two points that see each other (paper, Definition 1, d_Sigma)."""
+"""
+Cross-ratio distance d_Sigma(u, v) of two mutually visible points.
+
+Definition (paper, Definition 1): |a - b| |u - v| / (|a - u| |v - b|), where a and b are the ends
+of the chord through u and v, in the order a, u, v, b.
+"""
 
 from hnr_planner.core.checks import check_points, Floats
 from hnr_planner.core.spaces.space import Space
@@ -9,10 +14,11 @@ from numpy.typing import ArrayLike
 
 def cross_ratio_distance(space: Space, u: ArrayLike, v: ArrayLike) -> Floats:
     """
-    Cross-ratio distance |a - b| |u - v| / (|a - u| |v - b|) on the chord [a, u, v, b].
+    Return the cross-ratio distances |a - b| |u - v| / (|a - u| |v - b|) of pairs of points.
 
-    It has no unit, and stays the same under affine maps. It is no metric: on a chord the parts sum
-    up to less than the whole (Lemma 9). ``hilbert_distance`` of it is one in convex sets.
+    The distance has no unit and is invariant under affine maps. It is not a metric: on a chord,
+    the distances of subsegments sum to less than that of the ends (Lemma 9).
+    ``hilbert_distance`` is a metric in convex sets.
 
     Parameters
     ----------
@@ -24,29 +30,30 @@ def cross_ratio_distance(space: Space, u: ArrayLike, v: ArrayLike) -> Floats:
     Returns
     -------
     (k,) float64
-        inf for points that do not see each other.
+        inf for points that are not mutually visible.
 
     """
     u = np.atleast_2d(check_points('u', u, space.dim))
     v = np.atleast_2d(check_points('v', v, space.dim))
     u, v = np.broadcast_arrays(u, v)
     distance = np.linalg.norm(v - u, axis=1)
-    apart = distance > 0.0
-    directions = np.divide(v - u, distance[:, None], where=apart[:, None], out=np.ones(u.shape))
+    distinct = distance > 0.0
+    directions = np.divide(v - u, distance[:, None], where=distinct[:, None], out=np.ones(u.shape))
     behind, ahead = chords(space, u, directions)
     beyond = ahead - distance
     ratio = np.full(len(u), np.inf)
-    seen = apart & (behind > 0.0) & (beyond > 0.0)
-    ratio[seen] = (behind + ahead)[seen] * distance[seen] / (behind[seen] * beyond[seen])
-    ratio[~apart & (behind > 0.0)] = 0.0
+    visible = distinct & (behind > 0.0) & (beyond > 0.0)
+    length = (behind + ahead)[visible]
+    ratio[visible] = length * distance[visible] / (behind[visible] * beyond[visible])
+    ratio[~distinct & (behind > 0.0)] = 0.0
     return ratio
 
 
 def hilbert_distance(ratio: ArrayLike) -> Floats:
     """
-    Hilbert's distance log(1 + d) of cross-ratio distances d.
+    Return Hilbert's distance log(1 + d) of cross-ratio distances d.
 
-    Along a chord it adds up, so it is what ever shorter steps make of d; in a convex set it is a
-    metric (Hilbert 1895).
+    It is additive along a chord, so that it is the limit of the sum of d over ever shorter
+    subsegments. In a convex set it is a metric (Hilbert 1895).
     """
     return np.log1p(np.asarray(ratio, dtype=np.float64))

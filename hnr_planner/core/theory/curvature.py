@@ -1,4 +1,9 @@
-"""Curvature of a set: how sharply its boundary turns, by its length (paper, Assumption 3)."""
+"""
+Curvature kappa of a set.
+
+Definition (paper, Assumption 3): the supremum, over the plane slices H of the set, of the largest
+curvature kappa_H of the slice's boundary times its perimeter R_H.
+"""
 
 import math
 from typing import NamedTuple
@@ -12,7 +17,7 @@ from numpy.typing import ArrayLike
 
 class Curvature(NamedTuple):
     """
-    Curvature of one closed curve.
+    Curvature and perimeter of one closed curve.
 
     Attributes
     ----------
@@ -28,26 +33,26 @@ class Curvature(NamedTuple):
 
     @property
     def kappa(self) -> float:
-        """The paper's kappa_H R_H: without unit, at least 2 pi, infinite at corners."""
+        """Product kappa_H R_H of the paper: no unit, at least 2 pi, infinite at corners."""
         return self.largest * self.perimeter
 
 
 def curve_curvature(points: Floats) -> Curvature:
     """
-    Measure a smooth closed curve in the plane.
+    Return the curvature of a smooth closed curve in the plane.
 
     Parameters
     ----------
     points : (k, 2)
-        The curve at k equal steps of a smooth periodic parameter. Derivatives are those of the
-        trigonometric interpolation, so k has to resolve the sharpest turn.
+        Points at k equal steps of a smooth periodic parameter. Derivatives are those of the
+        trigonometric interpolant, so that k has to resolve the sharpest turn.
 
     """
     curve = points[:, 0] + 1j * points[:, 1]
     k = len(curve)
     frequency = np.fft.fftfreq(k, 1.0 / k)
     if k % 2 == 0:
-        frequency[k // 2] = 0.0  # it has no direction of turning
+        frequency[k // 2] = 0.0  # the derivative of the Nyquist mode vanishes at the points
     spectrum = np.fft.fft(curve)
     velocity = np.fft.ifft(1j * frequency * spectrum)
     acceleration = np.fft.ifft(-(frequency**2) * spectrum)
@@ -60,21 +65,21 @@ def slice_curvature(
     space: Space, centre: ArrayLike, first: ArrayLike, second: ArrayLike, n_points: int = 4096
 ) -> Curvature:
     """
-    Measure the boundary of a plane slice that is star-shaped about ``centre``.
+    Return the curvature of the boundary of a plane slice that is star-shaped about ``centre``.
 
-    Where the slice has several parts it is the one around ``centre``: the paper's kappa_H R_H is
-    at least as large.
+    Of a slice with several components it is the one that contains ``centre``, which bounds the
+    paper's kappa_H R_H from below.
 
     Parameters
     ----------
     space : Space
         The set.
     centre : (dim,)
-        A free point that sees all of the slice's boundary.
+        A free point from which all of the slice's boundary is visible.
     first, second : (dim,)
         Orthogonal unit vectors that span the plane.
     n_points : int
-        Points on the boundary.
+        Number of points on the boundary.
 
     """
     angle = np.arange(n_points) * (2.0 * math.pi / n_points)

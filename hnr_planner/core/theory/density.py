@@ -1,4 +1,9 @@
-"""The law of one step: density of where Hit-and-Run goes next (paper, equation (2), f_u)."""
+"""
+Transition density f_u of one step of Hit-and-Run from u.
+
+Definition (paper, equation (2)): f_u(v) = 2 / (n pi_n |l(u, v)| |u - v|^(n-1)) for v visible from
+u, else 0. l(u, v) is the chord through u and v, pi_n the volume of the unit ball.
+"""
 
 import math
 
@@ -10,17 +15,17 @@ from numpy.typing import ArrayLike
 
 
 def log_ball_volume(dim: int) -> float:
-    """Logarithm of the volume of the ball of radius 1: the paper's pi_n."""
+    """Return the logarithm of the volume of the unit ball in ``dim`` dimensions: log pi_n."""
     return dim / 2.0 * math.log(math.pi) - math.lgamma(dim / 2.0 + 1.0)
 
 
 def transition_density(space: Space, u: ArrayLike, points: ArrayLike) -> Floats:
     """
-    Density at ``points`` of the point that one step of Hit-and-Run takes from ``u``.
+    Return the density at ``points`` of one step of Hit-and-Run from ``u``.
 
-    A direction falls on ``v`` with density 1 / (n pi_n |u - v|^(n-1)) from either side of the
-    line, and then the place on the chord with density 1 / |chord|. Points that ``u`` does not see
-    get 0.
+    The line through v is hit with density 1 / (n pi_n |u - v|^(n-1)) by each of its two
+    directions; then the position on the chord has density 1 / |chord|. The density is 0 at points
+    not visible from ``u``.
 
     Parameters
     ----------
@@ -29,7 +34,7 @@ def transition_density(space: Space, u: ArrayLike, points: ArrayLike) -> Floats:
     u : (dim,)
         A free point.
     points : (k, dim)
-        Where to look; at ``u`` itself the density is infinite for dim > 1.
+        Points v; at ``u`` itself the density is infinite for dim > 1.
 
     Returns
     -------
@@ -40,17 +45,19 @@ def transition_density(space: Space, u: ArrayLike, points: ArrayLike) -> Floats:
     v = np.atleast_2d(check_points('points', points, space.dim))
     away = v - u
     distance = np.linalg.norm(away, axis=1)
-    apart = distance > 0.0
-    directions = np.divide(away, distance[:, None], where=apart[:, None], out=np.ones_like(away))
+    distinct = distance > 0.0
+    directions = np.divide(
+        away, distance[:, None], where=distinct[:, None], out=np.ones_like(away)
+    )
     behind, ahead = chords(space, u, directions)
     density = np.zeros(len(v))
-    seen = apart & (ahead > distance)
+    visible = distinct & (ahead > distance)
     # (2): f_u(v) = 2 1{v in view(u)} / (n pi_n |l(u, v)| |u - v|^(n-1))
-    density[seen] = 2.0 / (
+    density[visible] = 2.0 / (
         space.dim
         * math.exp(log_ball_volume(space.dim))
-        * (behind + ahead)[seen]
-        * distance[seen] ** (space.dim - 1)
+        * (behind + ahead)[visible]
+        * distance[visible] ** (space.dim - 1)
     )
-    density[~apart] = math.inf
+    density[~distinct] = math.inf
     return density

@@ -1,4 +1,9 @@
-"""What the bounds have to know of a set that is the image of a disc (paper, Assumptions 2, 3)."""
+"""
+Parameters of the bounds for a sheared disc (paper, Assumptions 2 and 3).
+
+A sheared disc is the image of a disc under a map that preserves volume: its diameter, Lipschitz
+constants and curvature are what Lemma 13 needs (``bounds.BallImage``).
+"""
 
 import math
 
@@ -10,19 +15,19 @@ from hnr_planner.core.theory.curvature import curve_curvature
 import numpy as np
 from scipy.spatial.distance import pdist
 
-#: Points on the boundary for the curvature, and every so many of them for the diameter.
+#: Number of boundary points for the curvature, and stride among them for the diameter.
 N_POINTS, STRIDE = 4096, 4
 
 
 def ball_image(space: ShearedSpace) -> BallImage:
     """
-    Measure a sheared disc: its diameter, its Lipschitz constants and its curvature.
+    Compute diameter, Lipschitz constants and curvature of a sheared disc.
 
     Raises
     ------
     RequestError
         For boxes, whose images have corners; and in more than two dimensions, where a ball that is
-        bent until it is not convex has a saddle point on its boundary: kappa is infinite there.
+        bent until it is not convex has a saddle point on its boundary, so that kappa is infinite.
 
     """
     if space.dim != 2 or not isinstance(space.base, BallSpace):

@@ -1,10 +1,11 @@
 """
-How long a path of Hit-and-Run is: what mixing gives, beside the expected number of transitions.
+Number of transitions of Hit-and-Run into a goal G, which is the length of its path.
 
-The planner walks until it is in the goal G, and its path is the whole walk. Once mixed, a walk is
-in G with probability sigma(G), the goal's part of the area: about t_mix / sigma(G) transitions
-(paper, Section 1). On the cells of a lattice the expectation itself is the solution of a linear
-system, so that the two can be compared.
+Estimate from mixing (paper, Section 1): t_mix / sigma(G), since a mixed walk is in G with
+probability sigma(G), the goal's fraction of the volume.
+
+On the cells of a lattice the expected number itself is the solution of a linear system, so that
+the two can be compared.
 """
 
 from hnr_planner.core.checks import Floats
@@ -13,12 +14,12 @@ from hnr_planner.core.theory.conductance import CellFlow
 import numpy as np
 from numpy.typing import NDArray
 
-#: A walk that has not mixed after so many steps is taken for one that never will.
+#: Number of steps after which a walk counts as one that never mixes.
 STEPS_MAX = 100_000
 
 
 def mixing_time(flow: CellFlow, start: int, epsilon: float = 0.25) -> int:
-    """Count the steps from a cell until the law over cells is within ``epsilon`` of uniform."""
+    """Return the steps from a cell until the law over cells is within ``epsilon`` of uniform."""
     kernel, stationary = flow.kernel, flow.area / flow.area.sum()
     law = np.zeros(len(stationary))
     law[start] = 1.0
@@ -41,16 +42,16 @@ def expected_transitions(flow: CellFlow, goal: NDArray[np.bool_]) -> Floats:
 
 
 def mixing_estimate(mixing: float, goal_fraction: float) -> float:
-    """Transitions that mixing suggests: t_mix / sigma(G), a new look after every mixing time."""
+    """Return the estimate t_mix / sigma(G): an independent trial after every mixing time."""
     return mixing / goal_fraction
 
 
 def transitions_bound(relaxation: float, goal_fraction: float, warmth: float = 1.0) -> float:
     """
-    Bound on the expected transitions into a goal: M t_rel (1 - sigma(G)) / sigma(G).
+    Return the bound M t_rel (1 - sigma(G)) / sigma(G) on the expected transitions into a goal.
 
-    For a reversible chain from its stationary law that is Dirichlet's principle (Aldous and Fill,
-    "Reversible Markov chains and random walks on graphs", Section 3.6); a start of density at most
-    ``warmth`` times the stationary one takes at most so many times longer.
+    For a reversible chain from its stationary law it follows from Dirichlet's principle (Aldous
+    and Fill, "Reversible Markov chains and random walks on graphs", Section 3.6). From a start of
+    density at most ``warmth`` M times the stationary one it takes at most M times as long.
     """
     return warmth * relaxation * (1.0 - goal_fraction) / goal_fraction

@@ -1,4 +1,4 @@
-"""Rays for quadrature: many chords at once, and averages over all directions from a point."""
+"""Quadrature along rays: chords of many lines at once, and means over directions at a point."""
 
 import math
 
@@ -12,22 +12,22 @@ from hnr_planner.core.theory.corners import corners
 import numpy as np
 from numpy.typing import NDArray
 
-#: Beyond a point where a line touches a space one looks this part of the line on: is it inside?
+#: Where a line touches a space, whether it enters is tested this fraction of the line farther on.
 PROBE = 1e-10
-#: Order of the Gauss rule between two directions of corners.
+#: Order of the Gauss rule between the directions of two corners.
 ORDER = 12
 
 
 def reach(space: Space, points: Floats, directions: Floats) -> Floats:
     """
-    Distance from points to the end of free space, each in its own direction.
+    Return the distances from points to the boundary, each in its own direction.
 
     Parameters
     ----------
     space : Space
         The set.
     points : (k, dim)
-        Points; those that are not free reach nowhere: 0.
+        Points; the distance of those that are not free is 0.
     directions : (k, dim)
         Unit vectors.
 
@@ -40,7 +40,11 @@ def reach(space: Space, points: Floats, directions: Floats) -> Floats:
 
 
 def chords(space: Space, points: Floats, directions: Floats) -> tuple[Floats, Floats]:
-    """Distances (k,) backwards and forwards to the ends of the chords, as for ``reach``."""
+    """
+    Return the distances (k,) backward and forward from points to the ends of their chords.
+
+    ``points`` and ``directions`` are (k, dim), directions unit vectors; 0 at points not free.
+    """
     points, directions = _in_rows(points, directions)
     return _reach(space.compiled, points, -directions), _reach(space.compiled, points, directions)
 
@@ -49,7 +53,7 @@ def pieces(
     space: Space, points: Floats, directions: Floats, lower: Floats, upper: Floats
 ) -> tuple[NDArray[np.int64], Floats, Floats]:
     """
-    Cut lines with a space: all the connected parts that lie in it, not only the chord.
+    Intersect lines with a space: return all maximal free intervals, not the chord alone.
 
     Parameters
     ----------
@@ -58,14 +62,14 @@ def pieces(
     points, directions : (k, dim)
         The lines ``point + s direction``.
     lower, upper : (k,)
-        Where to begin and to end on each.
+        Range of s on each line.
 
     Returns
     -------
     line : (m,) int64
-        The line that each part belongs to; parts are in the order of the lines.
+        Index of the line of each interval, in ascending order.
     first, last : (m,)
-        The parameters at which it begins and ends.
+        Ends of each interval.
 
     """
     points, directions = _in_rows(points, directions)
@@ -75,7 +79,7 @@ def pieces(
 def lengths_within(
     space: Space, points: Floats, directions: Floats, lower: Floats, upper: Floats
 ) -> Floats:
-    """Length (k,) of the part of each line between two parameters (k,) that lies in a space."""
+    """Return the free length (k,) of each line between two parameters (k,), as in ``pieces``."""
     line, first, last = pieces(space, points, directions, lower, upper)
     lengths = np.bincount(line, weights=last - first, minlength=len(points))
     return lengths.astype(np.float64)
@@ -83,21 +87,21 @@ def lengths_within(
 
 def half_sphere(point: Floats, n_directions: int, *cornered: Space) -> tuple[Floats, Floats]:
     """
-    Return directions and weights for a mean over all lines through a point.
+    Return directions and weights of a quadrature rule over all lines through a point.
 
-    In the plane the rule is Gauss's between the directions of the corners of the spaces given, so
-    that means over chords are exact to rounding where boundaries are straight. Smooth boundaries
-    have no corners, and a rule of equal steps is as good for them. In space it is a product of the
-    two. Each line counts once.
+    In the plane it is a Gauss rule between the directions of the corners of the given spaces, so
+    that means over chords are exact to rounding where boundaries are straight; without corners it
+    is a rule of equal steps. In three dimensions it is a product of a Gauss rule and a rule of
+    equal steps. Each line counts once.
 
     Parameters
     ----------
     point : (dim,)
-        Where the lines pass; dim is 2 or 3.
+        Point on all lines; dim is 2 or 3.
     n_directions : int
-        How many there are, about.
+        Approximate number of directions.
     *cornered : Space
-        Whose corners matter.
+        Spaces whose corners are kinks of the function to be averaged.
 
     Returns
     -------
@@ -109,7 +113,7 @@ def half_sphere(point: Floats, n_directions: int, *cornered: Space) -> tuple[Flo
     Raises
     ------
     RequestError
-        In more than three dimensions: a product rule is no use there.
+        In more than three dimensions, where a product rule is too costly.
 
     """
     dim = len(point)
@@ -136,9 +140,9 @@ def half_sphere(point: Floats, n_directions: int, *cornered: Space) -> tuple[Flo
 
 
 def _half_circle(point: Floats, n_directions: int, *cornered: Space) -> tuple[Floats, Floats]:
-    """Angles (m,) in [0, pi) and weights (m,) that sum to 1."""
-    seen = [corners(space).points - point for space in cornered]
-    ahead = np.concatenate(seen) if seen else np.empty((0, 2))
+    """Return angles (m,) in [0, pi) and weights (m,) that sum to 1."""
+    offsets = [corners(space).points - point for space in cornered]
+    ahead = np.concatenate(offsets) if offsets else np.empty((0, 2))
     if len(ahead) == 0:
         middles = (np.arange(n_directions, dtype=np.float64) + 0.5) * (math.pi / n_directions)
         return middles, np.full(n_directions, 1.0 / n_directions)
@@ -149,22 +153,23 @@ def _half_circle(point: Floats, n_directions: int, *cornered: Space) -> tuple[Fl
     n_panels[width < 1e-13] = 0
     begin = np.repeat(first, n_panels)
     step = np.repeat(width, n_panels) / np.repeat(n_panels, n_panels)
-    place = np.arange(n_panels.sum()) - np.repeat(np.cumsum(n_panels) - n_panels, n_panels)
+    index = np.arange(n_panels.sum()) - np.repeat(np.cumsum(n_panels) - n_panels, n_panels)
     nodes, weights = np.polynomial.legendre.leggauss(ORDER)
-    angles: Floats = (begin + step * place)[:, None] + step[:, None] * (nodes + 1.0) / 2.0
-    parts: Floats = step[:, None] * weights / 2.0
-    shares = parts.ravel() / parts.sum()
+    angles: Floats = (begin + step * index)[:, None] + step[:, None] * (nodes + 1.0) / 2.0
+    widths: Floats = step[:, None] * weights / 2.0
+    shares = widths.ravel() / widths.sum()
     return angles.ravel().astype(np.float64), shares.astype(np.float64)
 
 
 def _in_rows(points: Floats, directions: Floats) -> tuple[Floats, Floats]:
-    """Both as arrays (k, dim) in the order of memory that the kernels are compiled for."""
+    """Return both as C-contiguous arrays (k, dim), as the kernels are compiled for."""
     directions = np.ascontiguousarray(np.atleast_2d(directions))
     return np.ascontiguousarray(np.broadcast_to(points, directions.shape)), directions
 
 
 @kernel
 def _reach(space, points, directions):
+    """Return the distances (k,) from points to the boundary; 0 at points not free."""
     space = borrowed(space)
     ends = np.zeros(len(points))
     for k in range(len(points)):
@@ -175,6 +180,7 @@ def _reach(space, points, directions):
 
 @kernel
 def _pieces(space, points, directions, lower, upper):
+    """Return line, first and last of the free intervals of lines, in the order of the lines."""
     space = borrowed(space)
     line = []
     first = []
@@ -194,5 +200,5 @@ def _pieces(space, points, directions, lower, upper):
                 first.append(begin)
                 last.append(min(end, upper[k]))
             else:
-                probe *= 2.0  # along a face: it touches for long, and never enters
+                probe *= 2.0  # along a face: the line touches, but does not enter here
     return np.array(line, dtype=np.int64), np.array(first), np.array(last)

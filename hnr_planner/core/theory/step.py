@@ -1,4 +1,12 @@
-"""What one step of Hit-and-Run does: P_u(A), means, the step F(u), and how two steps differ."""
+"""
+Functionals of the law of one step of Hit-and-Run from u.
+
+- step probability P_u(A): the integral of the density f_u over A (paper, Section 3.1);
+- step length F(u): the length that a step does not exceed with probability 1/8 (Section 3.3,
+  before equation (6));
+- overlap of the steps from u and v: 1 minus the total variation distance of their laws (Lemma 12);
+- unseen probability: that a step from u is not visible from v (Lemma 11).
+"""
 
 from collections.abc import Callable
 
@@ -11,7 +19,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.optimize import brentq
 
-#: Lines through a point in a quadrature, about, and places on each where those are needed.
+#: Approximate number of lines through a point in a quadrature, and of points on each line.
 N_DIRECTIONS = 720
 N_POSITIONS = 128
 
@@ -20,10 +28,10 @@ def step_probability(
     space: Space, u: ArrayLike, region: Space, n_directions: int = N_DIRECTIONS
 ) -> float:
     """
-    Probability P_u(A) that a step from ``u`` (dim,) ends in ``region``.
+    Return the probability P_u(A) that a step from ``u`` (dim,) ends in ``region``.
 
-    The mean over all lines of how much of the chord lies in the region: exact on each line, and
-    over the angle to rounding where the corners of both are known.
+    It is the mean over all lines of the fraction of the chord in the region: exact on each line,
+    and exact to rounding over the angle where the corners of both are known.
     """
     u = _free_point(space, u)
     directions, weights = half_sphere(u, n_directions, space, region)
@@ -41,9 +49,9 @@ def step_mean(
     n_positions: int = N_POSITIONS,
 ) -> float:
     """
-    Mean of ``function`` ((k, dim) -> (k,)) over where a step from ``u`` (dim,) ends.
+    Return the mean of ``function`` ((k, dim) -> (k,)) at the end of a step from ``u`` (dim,).
 
-    The middle of ``n_positions`` equal parts stands for each part of a chord.
+    On each chord it is the midpoint rule with ``n_positions`` points.
     """
     u = _free_point(space, u)
     directions, weights = half_sphere(u, n_directions, space)
@@ -59,9 +67,9 @@ def step_length(
     space: Space, u: ArrayLike, probability: float = 1.0 / 8.0, n_directions: int = N_DIRECTIONS
 ) -> float:
     """
-    Length that a step from ``u`` (dim,) does not exceed with ``probability``.
+    Return the length that a step from ``u`` (dim,) does not exceed with ``probability``.
 
-    With 1/8, as it stands there, it is the paper's F(u) (Section 3.3, before equation (6)).
+    With the default 1/8 it is the paper's F(u) (Section 3.3, before equation (6)).
     """
     u = _free_point(space, u)
     directions, weights = half_sphere(u, n_directions, space)
@@ -77,9 +85,10 @@ def step_length(
 
 def step_overlap(space: Space, u: ArrayLike, v: ArrayLike) -> float:
     """
-    Mass that the laws of a step from ``u`` and from ``v`` (dim,) have in common.
+    Return the common mass of the laws of a step from ``u`` and of a step from ``v`` (dim,).
 
-    One minus their total variation distance: the mean over a step from ``u`` of min(1, f_v / f_u).
+    It is 1 minus their total variation distance: the mean of min(1, f_v / f_u) over a step from
+    ``u``.
     """
     u, v = _free_point(space, u), _free_point(space, v)
     if (u == v).all():
@@ -93,7 +102,7 @@ def step_overlap(space: Space, u: ArrayLike, v: ArrayLike) -> float:
 
 
 def unseen_probability(space: Space, u: ArrayLike, v: ArrayLike) -> float:
-    """Probability that a step from ``u`` ends where ``v`` (dim,) does not see it (Lemma 11)."""
+    """Return the probability that a step from ``u`` ends at a point not visible from ``v``."""
     u, v = _free_point(space, u), _free_point(space, v)
 
     def unseen(points: Floats) -> Floats:
@@ -105,6 +114,7 @@ def unseen_probability(space: Space, u: ArrayLike, v: ArrayLike) -> float:
 
 
 def _free_point(space: Space, u: ArrayLike) -> Floats:
+    """Return ``u`` (dim,) as a free point, or raise RequestError."""
     point = check_point('point', u, space.dim)
     if not space.contains(point):
         raise RequestError(f'point {point.tolist()} is {space.why_not_free(point)}')

@@ -1,4 +1,8 @@
-"""The view: what can be seen from a point (paper, Section 3.1)."""
+"""
+View of a point u.
+
+Definition (paper, Section 3.1): the set of points v for which the segment from u to v is free.
+"""
 
 import math
 
@@ -10,17 +14,17 @@ from hnr_planner.core.theory.rays import reach
 import numpy as np
 from numpy.typing import ArrayLike
 
-#: Directions nearer to each other than this [rad] count as one.
+#: Directions that differ by less than this count as one [rad].
 NARROWEST = 1e-12
 
 
 def view(space: Space, u: ArrayLike, n_directions: int = 720) -> Floats:
     """
-    Return the polygon (m, 2) of the points of the plane that ``u`` (2,) sees, counter-clockwise.
+    Return the polygon (m, 2) of the points visible from ``u`` (2,), counter-clockwise.
 
-    Between the directions of two neighbouring corners the view ends on one straight wall, so two
-    rays tell it exactly. A space whose corners are not known is looked at in ``n_directions``: a
-    polygon with its vertices on the boundary.
+    Between the directions of two neighbouring corners the view ends on one straight wall, which
+    two rays determine exactly. Where corners are unknown, the polygon has its vertices on the
+    boundary in ``n_directions``.
     """
     if space.dim != 2:
         raise RequestError(f'a view is a polygon in the plane, the space has {space.dim} axes')
@@ -37,19 +41,20 @@ def view(space: Space, u: ArrayLike, n_directions: int = 720) -> Floats:
     first, width = breaks, np.diff(breaks, append=breaks[0] + 2.0 * math.pi)
     first, width = first[width > NARROWEST], width[width > NARROWEST]
     # Walls are lines a . (p - u) = 1, so a . e(angle) = 1 / reach: two rays give a (2,).
-    rays = [_unit(first + part * width) for part in (0.25, 0.75)]
+    rays = [_unit(first + fraction * width) for fraction in (0.25, 0.75)]
     inverse = np.stack([1.0 / reach(space, u, ray) for ray in rays], axis=1)
     walls = np.linalg.solve(np.stack(rays, axis=1), inverse[:, :, None])[:, :, 0]
     ends = [_unit(first), _unit(first + width)]
-    corners_seen = [ray / (walls * ray).sum(axis=1)[:, None] for ray in ends]
-    return u + np.stack(corners_seen, axis=1).reshape(-1, 2)
+    vertices = [ray / (walls * ray).sum(axis=1)[:, None] for ray in ends]
+    return u + np.stack(vertices, axis=1).reshape(-1, 2)
 
 
 def polygon_area(polygon: Floats) -> float:
-    """Area of a polygon (m, 2), positive when counter-clockwise."""
+    """Return the area of a polygon (m, 2), positive when counter-clockwise."""
     x, y = (polygon - polygon[0]).T
     return float(x @ np.roll(y, -1) - y @ np.roll(x, -1)) / 2.0
 
 
 def _unit(angles: Floats) -> Floats:
+    """Return the unit vectors (k, 2) of angles (k,) [rad]."""
     return np.stack([np.cos(angles), np.sin(angles)], axis=1)

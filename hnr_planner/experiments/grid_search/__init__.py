@@ -1,8 +1,9 @@
 """
-Grid search, as most robots plan today, compiled: A*, Theta*, and a wavefront over the whole map.
+Compiled grid searches to compare with: A*, Theta*, and a wavefront over the whole map.
 
-Steps lead from cell centre to cell centre, to one of eight neighbours, and cut no corner: a
-diagonal one needs all four cells free. Grids are compiled ones with a blocked rim.
+Paths lead from cell centre to cell centre, to one of eight neighbours (Theta*: to any visible
+cell). A diagonal step needs all four cells around it free. Grids are compiled grid spaces, whose
+outermost cells are blocked; points are (x, y) in their kernel frame (units of cells).
 """
 
 from hnr_planner.experiments.grid_search.a_star import a_star

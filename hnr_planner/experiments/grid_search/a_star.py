@@ -1,4 +1,4 @@
-"""A* over neighbouring cells."""
+"""A* search over the eight neighbours of a cell."""
 
 from heapq import heappop, heappush
 
@@ -9,7 +9,7 @@ import numpy as np
 
 @kernel
 def a_star(grid, start, goal):
-    """Find a shortest path (m, 2) over neighbouring cells; the heuristic is their distance."""
+    """Find a shortest path (m, 2) over neighbouring cells, with the octile distance heuristic."""
     free_distance = grid.free_distance
     columns = free_distance.shape[1]
     source, target = cell_of(start, columns), cell_of(goal, columns)
@@ -39,6 +39,7 @@ def a_star(grid, start, goal):
 
 @kernel
 def _octile(a, b, columns):
+    """Return the length of a shortest path between two cells without obstacles [cells]."""
     rows_apart = abs(a // columns - b // columns)
     columns_apart = abs(a % columns - b % columns)
     shorter = min(rows_apart, columns_apart)

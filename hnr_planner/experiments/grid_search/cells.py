@@ -1,17 +1,19 @@
-"""Cells and the steps between them."""
+"""Indices of cells and the steps between neighbours."""
 
 import math
 
 from hnr_planner.core.kernels.kernel import kernel
 import numpy as np
 
+#: Length of a diagonal step [cells].
 DIAGONAL = math.sqrt(2.0)
+#: Steps (rows, columns) to the eight neighbours; the first four are straight.
 STEPS = ((0, 1), (1, 0), (0, -1), (-1, 0), (1, 1), (1, -1), (-1, 1), (-1, -1))
 
 
 @kernel
 def may_step(free_distance, cell, down, right):
-    """Say whether a step cuts no corner: a diagonal one needs all four cells free."""
+    """Return whether a step is free: a diagonal step needs all four cells around it free."""
     row, column = cell // free_distance.shape[1], cell % free_distance.shape[1]
     if free_distance[row + down, column + right] == 0:
         return False
@@ -22,13 +24,13 @@ def may_step(free_distance, cell, down, right):
 
 @kernel
 def cell_of(point, columns):
-    """Return the number of the cell that holds a point (x, y)."""
+    """Return the index, row-major, of the cell that contains a point (x, y)."""
     return int(point[1]) * columns + int(point[0])
 
 
 @kernel
 def trace(parent, source, target, columns):
-    """Return the path (m, 2) over cell centres along the parents."""
+    """Return the path (m, 2) over cell centres from source to target along the parents."""
     cells = [target]
     while cells[-1] != source:
         cells.append(parent[cells[-1]])

@@ -1,4 +1,4 @@
-"""String pulling: what is left of a path when vertices that are not needed go."""
+"""String pulling: remove vertices of a path that straight segments can skip."""
 
 from hnr_planner.core.kernels.kernel import kernel
 from hnr_planner.core.spaces.primitives import segment_is_free
@@ -7,7 +7,7 @@ import numpy as np
 
 @kernel
 def pull_string(grid, path):
-    """Keep of a path (m, 2) only vertices that do not see the one before their last."""
+    """Return a path (m, 2) less every vertex whose neighbours can be joined by a free segment."""
     kept = np.empty_like(path)
     kept[0] = path[0]
     n_kept = 1

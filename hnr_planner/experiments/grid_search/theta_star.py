@@ -1,4 +1,4 @@
-"""Theta* (Nash, Daniel, Koenig and Felner 2007): A* whose parents may be any cell in sight."""
+"""Theta* (Nash, Daniel, Koenig and Felner 2007): A* whose parents may be any visible cell."""
 
 from heapq import heappop, heappush
 import math
@@ -11,7 +11,7 @@ import numpy as np
 
 @kernel
 def theta_star(grid, start, goal):
-    """Find a short path (m, 2) from cell centre to cell centre; the heuristic is the distance."""
+    """Find a short path (m, 2) over cell centres, with the straight distance as heuristic."""
     free_distance = grid.free_distance
     columns = free_distance.shape[1]
     source, target = cell_of(start, columns), cell_of(goal, columns)
@@ -34,7 +34,7 @@ def theta_star(grid, start, goal):
             before = parent[cell]
             length = cost[before] + _distance(before, near, columns)
             if length >= cost[near]:
-                continue  # and so is the way by this cell: no need to look
+                continue  # a path through this cell is no shorter: skip the visibility test
             if not segment_is_free(grid, _centre(before, columns), _centre(near, columns)):
                 before = cell
                 length = cost[before] + _distance(before, near, columns)
@@ -47,9 +47,11 @@ def theta_star(grid, start, goal):
 
 @kernel
 def _distance(a, b, columns):
+    """Return the straight distance between the centres of two cells [cells]."""
     return math.hypot(a % columns - b % columns, a // columns - b // columns)
 
 
 @kernel
 def _centre(cell, columns):
+    """Return the centre (2,) of a cell."""
     return np.array((cell % columns + 0.5, cell // columns + 0.5))

@@ -1,4 +1,4 @@
-"""A wavefront over the whole map and the way down its potential, as NavFn plans."""
+"""A wavefront potential over the whole map and the descent along it, as in NavFn."""
 
 import math
 
@@ -6,17 +6,17 @@ from hnr_planner.core.kernels.kernel import kernel
 from hnr_planner.experiments.grid_search.cells import cell_of, DIAGONAL, may_step, STEPS
 import numpy as np
 
-#: A wave spreads this far [cells] before its late cells are looked at.
+#: Width of a wave [cells]: cells with a larger potential wait for the next wave.
 WAVE = 2.0
 
 
 @kernel
 def wavefront(grid, start, goal):
     """
-    Find a path (m, 2) down the potential of the goal over the whole map.
+    Find a path (m, 2) by descent along the potential of the goal over the whole map.
 
-    The potential is a distance: at each cell a plane through its lower neighbours, raised by one
-    cell. It spreads in waves, and each wave holds its late cells back for the next one.
+    The potential is a first-order approximation of the distance to the goal. It is computed in
+    waves of width ``WAVE``; cells beyond the current wave are postponed to the next one.
     """
     columns = grid.free_distance.shape[1]
     source, target = cell_of(start, columns), cell_of(goal, columns)
@@ -30,7 +30,7 @@ def wavefront(grid, start, goal):
 
 @kernel
 def potential(grid, goal):
-    """Return the way (rows * columns,) from every cell to the goal [cells]; inf without one."""
+    """Return the distance (rows * columns,) of cells to the goal [cells]; inf without a path."""
     free_distance = grid.free_distance
     columns = free_distance.shape[1]
     distances = np.full(free_distance.size, np.inf, dtype=np.float32)
@@ -40,13 +40,14 @@ def potential(grid, goal):
 
 @kernel
 def _spread(free, columns, target, potential):
+    """Fill ``potential`` (n_cells,) in waves that start at the cell ``target``."""
     queues = (np.empty(free.size, dtype=np.int32), np.empty(free.size, dtype=np.int32))
     waiting = np.zeros(free.size, dtype=np.bool_)
     late = np.empty(free.size, dtype=np.int32)
     potential[target] = 0.0
     n_now, n_late, limit, turn = 0, 0, WAVE, 0
     for offset in (1, -1, columns, -columns):
-        n_now = _wait(free, waiting, queues[0], n_now, target + offset)
+        n_now = _enqueue(free, waiting, queues[0], n_now, target + offset)
     while n_now > 0:
         now, following, n_next = queues[turn], queues[1 - turn], 0
         for k in range(n_now):
@@ -61,9 +62,9 @@ def _spread(free, columns, target, potential):
                 if potential[near] <= value:
                     continue
                 if value < limit:
-                    n_next = _wait(free, waiting, following, n_next, near)
+                    n_next = _enqueue(free, waiting, following, n_next, near)
                 else:
-                    n_late = _wait(free, waiting, late, n_late, near)
+                    n_late = _enqueue(free, waiting, late, n_late, near)
         if n_next == 0:
             following[:n_late] = late[:n_late]
             n_next, n_late, limit = n_late, 0, limit + WAVE
@@ -71,8 +72,8 @@ def _spread(free, columns, target, potential):
 
 
 @kernel
-def _wait(free, waiting, queue, n_queued, cell):
-    """Put a free cell that does not wait yet into a queue; return the queue's length."""
+def _enqueue(free, waiting, queue, n_queued, cell):
+    """Append a cell to a queue if it is free and in no queue; return the queue's length."""
     if free[cell] == 0 or waiting[cell]:
         return n_queued
     waiting[cell] = True
@@ -82,7 +83,7 @@ def _wait(free, waiting, queue, n_queued, cell):
 
 @kernel
 def _raised(potential, cell, columns):
-    """Potential of a cell from the lower one of its neighbours in each direction."""
+    """Return the potential of a cell by the eikonal equation from its lower neighbours."""
     a = min(potential[cell - 1], potential[cell + 1])
     b = min(potential[cell - columns], potential[cell + columns])
     if abs(a - b) >= 1.0:
@@ -92,6 +93,7 @@ def _raised(potential, cell, columns):
 
 @kernel
 def _lowest_neighbour(free_distance, potential, cell):
+    """Return the neighbour in the direction of steepest descent."""
     columns = free_distance.shape[1]
     lowest, steepest = cell, 0.0
     for down, right in STEPS:

@@ -1,14 +1,15 @@
 """
-How fast walks forget where they began (paper, Theorem 5: in order of n^6 steps).
+Mixing time of random walks: steps until the start is forgotten (paper, Theorem 5: order n^6).
 
-Many chains of each walk begin at a far point of a set. Step by step the distance of their law
-from the uniform one is measured, until it is below .1:
+Many chains of a walk start at a point at the far end of a set. The total variation distance
+between their law and the uniform law is measured after a growing number of steps, until it is
+below .1:
 
 - in sets in the plane, for Hit-and-Run and both ball walks (``curves``);
-- for Hit-and-Run in sets of 2 to 30 dimensions, beside the paper's bound (``dimension``).
+- in sets of 2 to 30 dimensions, for Hit-and-Run, beside the paper's bound (``dimension``).
 
-In the plane the chains of Hit-and-Run then walk on, and tell the relaxation time, which is laid
-beside the conductance (``relaxation``).
+In the plane the mixed chains of Hit-and-Run continue, to measure the relaxation time, which is
+compared with the conductance (``relaxation``).
 """
 
 import math
@@ -34,17 +35,18 @@ from hnr_planner.experiments.mixing.dimension import (
 from hnr_planner.experiments.mixing.relaxation import draw_relaxation, measured, relaxation_table
 from hnr_planner.experiments.mixing.sets import planar_sets
 from hnr_planner.experiments.mixing.solids import solid, SOLIDS
-from hnr_planner.experiments.mixing.variation import approach, columns
+from hnr_planner.experiments.mixing.variation import columns, run_until_mixed
+from hnr_planner.experiments.registry import EXPERIMENTS
 from hnr_planner.experiments.results import Results
 from matplotlib.figure import Figure
 
-#: Three curves in a row, and two wider panels below.
+#: Panels of the figure: three curves in a row, and two wider panels below.
 LAYOUT: list[Any] = [[name for name in list(PANELS)[k:][:3] for _ in range(2)] for k in (0, 3)]
 LAYOUT.append(3 * ['relaxation'] + 3 * ['dimension'])
 
 
 class Case(NamedTuple):
-    """A set, by its name and dimension, and a walk in it; a radius [m] where it has one."""
+    """Name and dimension of a set, a walk, and the radius of a ball walk [m], else 0."""
 
     shape: str
     dim: int
@@ -53,7 +55,7 @@ class Case(NamedTuple):
 
 
 def cases() -> list[Case]:
-    """List the sets in the plane with all walks, and the solids with Hit-and-Run."""
+    """Return the sets in the plane with all walks, and the solids with Hit-and-Run."""
     planar = [Case(name, 2, 'hit_and_run', 0.0) for name in planar_sets()]
     balls = [
         Case(name, 2, walk, times * least)
@@ -69,19 +71,19 @@ def cases() -> list[Case]:
 
 
 def run(case: Case, seed: int) -> dict[str, float]:
-    """Let the chains walk until they are mixed, and see how they came there."""
+    """Run chains until they are mixed; return distances on the way and the relaxation time."""
     if case.shape in SOLIDS:
         mixing_set = solid(case.shape, case.dim)
     else:
         mixing_set = planar_sets()[case.shape]
-    seen, chains = approach(mixing_set, make_walk(case.walk, case.radius), seed)
+    distances, chains = run_until_mixed(mixing_set, make_walk(case.walk, case.radius), seed)
     timed = case.shape in planar_sets() and case.walk == 'hit_and_run'
     relaxation = measured(case.shape, chains) if timed else math.nan
-    return {'relaxation': relaxation, **columns(seen)}
+    return {'relaxation': relaxation, **columns(distances)}
 
 
 def figure(results: Results) -> Figure:
-    """Draw the curves in the plane, the relaxation time, and the steps over the dimension."""
+    """Draw total variation against steps, relaxation times, and steps against dimension."""
     drawn = new_figure(10.0, 11.0)
     axes = drawn.subplot_mosaic(LAYOUT, height_ratios=(1, 1, 1.5))
     for k, name in enumerate(PANELS):
@@ -97,7 +99,7 @@ def figure(results: Results) -> Figure:
 
 
 def tables(results: Results) -> str:
-    """Return the numbers."""
+    """Return the tables of all parts."""
     return '\n'.join(
         [
             'Steps until the total variation is below .1, by the estimates from below and from '
@@ -114,8 +116,7 @@ def tables(results: Results) -> str:
 
 
 EXPERIMENT = Experiment(
-    name='mixing',
-    about='How many steps walks need to forget where they began.',
+    EXPERIMENTS['mixing'],
     runs=10,
     cases=cases,
     run=run,

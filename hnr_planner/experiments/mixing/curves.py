@@ -1,4 +1,4 @@
-"""The walks beside each other: total variation against steps, in sets in the plane."""
+"""Total variation against steps for all walks, in sets in the plane."""
 
 import math
 
@@ -6,7 +6,13 @@ from hnr_planner.core import BallWalk, HitAndRunWalk
 from hnr_planner.core.sampling.walks import Walk
 from hnr_planner.drawing import FAINT_INK
 from hnr_planner.experiments.figures import draw_profile, Look, LOOKS, style
-from hnr_planner.experiments.mixing.variation import between, in_words, MIXED, SEEN_AT, steps
+from hnr_planner.experiments.mixing.variation import (
+    between,
+    CHECKPOINTS,
+    format_steps,
+    MIXED,
+    steps,
+)
 from hnr_planner.experiments.results import markdown, Results
 from matplotlib.axes import Axes
 import numpy as np
@@ -17,16 +23,16 @@ WALKS = {
     'end_point': Look('ball walk, end point only', '#CC79A7', 's'),
 }
 BALL_WALKS = ('ball_walk', 'end_point')
-#: The least radius of the ball walks in a set [m]; the others are so many times that. Each version
-#: is shown with the radius that does best.
+#: Smallest radius of the ball walks in a set [m]. Each version runs with ``TIMES`` that radius;
+#: the one that mixes first is shown.
 RADII = {
     **dict.fromkeys(('L', 'star', 'door 0.05', 'door 0.1', 'door 0.2', 'door 0.4'), 0.6),
     'spiral 6': 0.8,
 }
 TIMES = (1, 2, 4, 8)
-#: Looks that are drawn: from 8 on every time the steps have doubled, which is when chains stop.
-DRAWN = (*SEEN_AT[:4], SEEN_AT[5], *SEEN_AT[7::4])
-#: The sets whose curves are drawn.
+#: Checkpoints that are drawn: from 8 on every doubling of the steps, which is where chains stop.
+DRAWN = (*CHECKPOINTS[:4], CHECKPOINTS[5], *CHECKPOINTS[7::4])
+#: Sets whose curves are drawn, and the titles of their panels.
 PANELS = {
     'L': 'L, arms 1 m wide',
     'star': 'Star of five rays',
@@ -38,14 +44,14 @@ PANELS = {
 
 
 def make_walk(name: str, radius: float) -> Walk:
-    """Return a walk; Hit-and-Run has no radius."""
+    """Return the walk of a name in ``WALKS``; Hit-and-Run ignores the radius [m]."""
     if name == 'hit_and_run':
         return HitAndRunWalk()
     return BallWalk(radius, segment_visible=name == 'ball_walk')
 
 
 def best(results: Results) -> Results:
-    """Return the rows of the radius with which a walk in a set mixes first."""
+    """Return the rows of the radius with which a ball walk in a set mixes first."""
 
     def last(rows: Results) -> float:
         value = steps(rows)[1].value
@@ -55,38 +61,38 @@ def best(results: Results) -> Results:
 
 
 def draw_curves(axes: Axes, results: Results, name: str) -> None:
-    """Draw the total variation of each walk: bands reach from one estimate to the other."""
+    """Draw the total variation of each walk as a band between the two estimates."""
     for walk, look in WALKS.items():
         rows = best(results.where(shape=name, walk=walk))
-        looks = [k for k in DRAWN if np.isfinite(rows[f'above_{k}']).all()]
-        means = [between(rows.mean(f'below_{k}'), rows.mean(f'above_{k}')) for k in looks]
-        draw_profile(axes, looks, means, look)
+        drawn = [k for k in DRAWN if np.isfinite(rows[f'above_{k}']).all()]
+        means = [between(rows.mean(f'below_{k}'), rows.mean(f'above_{k}')) for k in drawn]
+        draw_profile(axes, drawn, means, look)
     floor = float(rows['floor'][0])
-    for at, line, words in ((MIXED, '-', f'{MIXED}: mixed'), (floor, ':', 'floor')):
-        axes.axhline(at, color=FAINT_INK, linewidth=1.0, linestyle=line, label=words)
+    for level, line, label in ((MIXED, '-', f'{MIXED}: mixed'), (floor, ':', 'floor')):
+        axes.axhline(level, color=FAINT_INK, linewidth=1.0, linestyle=line, label=label)
     axes.set(xscale='log', ylim=(0.0, 1.0), yticks=(0.0, 0.5, 1.0))
     axes.minorticks_off()
     style(axes, PANELS[name], 'steps', 'total variation')
 
 
 def curves_table(results: Results) -> str:
-    """Return the steps until each walk is mixed, the ball walks with the best of their radii."""
+    """Return a table of the mixing steps of each walk, the ball walks with their best radius."""
     header = ['set', WALKS['hit_and_run'].label]
     for walk in BALL_WALKS:
         header += [WALKS[walk].label, 'its radius [m]']
     rows = []
     for name in RADII:
         here = results.where(shape=name)
-        row: list[object] = [name, in_words(here.where(walk='hit_and_run'))]
+        row: list[object] = [name, format_steps(here.where(walk='hit_and_run'))]
         for walk in BALL_WALKS:
             chosen = best(here.where(walk=walk))
-            row += [in_words(chosen), chosen['radius'][0]]
+            row += [format_steps(chosen), chosen['radius'][0]]
         rows.append([*row, f'{here.mean("floor").value:.3f}'])
     return markdown([*header, 'floor'], rows)
 
 
 def radii_table(results: Results) -> str:
-    """Return the steps of the ball walks with each radius, by the estimate from above."""
+    """Return a table of the ball walks' mixing steps by radius, by the estimate from above."""
     rows = []
     for name, least in RADII.items():
         for walk in BALL_WALKS:

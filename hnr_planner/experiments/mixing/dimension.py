@@ -1,8 +1,8 @@
 """
-How the steps until a set is mixed grow with its dimension, beside the paper's bound.
+Growth of the mixing steps with the dimension n of a set, beside the paper's bound.
 
-Theorem 5 says C' n^6 log(M / epsilon) and leaves C' open. For the ball, the only one of these
-sets that has the curvature it asks for, Lemma 13 and Lemma 6 give a number.
+Theorem 5 bounds the steps by C' n^6 log(M / epsilon) and leaves C' open. Lemmas 13 and 6 give a
+number for the ball, the only set here whose boundary meets the theorem's assumption on curvature.
 """
 
 from collections.abc import Sequence
@@ -11,16 +11,16 @@ from hnr_planner.core.theory import BallImage, mixing_bound, printed_conductance
 from hnr_planner.drawing import FAINT_INK
 from hnr_planner.experiments.figures import draw_profile, legend, Look, style
 from hnr_planner.experiments.mixing.solids import SOLIDS
-from hnr_planner.experiments.mixing.variation import between, in_words, MIXED, steps
+from hnr_planner.experiments.mixing.variation import between, format_steps, MIXED, steps
 from hnr_planner.experiments.results import markdown, Mean, Results
 from matplotlib.axes import Axes
 import numpy as np
 from numpy.typing import NDArray
 
 DIMENSIONS = (2, 3, 5, 8, 12, 20, 30)
-#: Exponents are fitted to these dimensions: were they one power of n, they would agree.
+#: Two ranges to fit exponents to: they agree where the steps grow like one power of n.
 LOW, HIGH = DIMENSIONS[:4], DIMENSIONS[3:]
-#: Bound M on the density at the start, of the paper's bound.
+#: Bound M on the density of the start, relative to the uniform one, in the paper's bound.
 WARMTH = 2.0
 LOOKS = {
     'simplex': Look('simplex', '#D55E00', 's'),
@@ -33,25 +33,25 @@ LOOKS = {
 
 
 def bound(dim: int) -> float:
-    """Return the steps that the paper's lemmas, as printed, ask for in a ball of volume 1."""
+    """Return the paper's bound on the steps, as printed, for the ball of volume 1."""
     return mixing_bound(printed_conductance(BallImage.unit_ball(dim)), WARMTH, MIXED)
 
 
 def exponents(results: Results, dimensions: Sequence[int]) -> Mean:
-    """Fit the power of n that the steps grow with, in each run."""
+    """Fit the exponent of n in the growth of the steps, and return its mean over the runs."""
     each = [results.where(dim=dim) for dim in dimensions]
     middle = np.array([(rows['first'] + rows['last']) / 2.0 for rows in each])
     return Results({'exponent': _slopes(dimensions, middle)}).mean('exponent')
 
 
 def _slopes(dimensions: Sequence[int], values: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the slopes (k,) of values (n_dimensions, k) over the dimensions, both as logs."""
+    """Return the slopes (k,) of log values (n_dimensions, k) against log dimensions."""
     slopes: NDArray[np.float64] = np.polyfit(np.log(dimensions), np.log(values), 1)[0]
     return slopes
 
 
 def draw_dimensions(axes: Axes, results: Results) -> None:
-    """Draw the steps over the dimension, and how steep n^6 is."""
+    """Draw the steps against the dimension, with a line of slope n^6 to compare."""
     for name, look in LOOKS.items():
         here = results.where(shape=name)
         each = [steps(here.where(dim=dim)) for dim in DIMENSIONS]
@@ -68,11 +68,11 @@ def draw_dimensions(axes: Axes, results: Results) -> None:
 
 
 def dimensions_table(results: Results) -> str:
-    """Return the steps in each set and dimension, the bound, and the powers of n."""
+    """Return a table of steps by set and dimension, the bound, and the fitted exponents."""
     rows: list[list[object]] = [
         [
             dim,
-            *(in_words(results.where(shape=name, dim=dim)) for name in SOLIDS),
+            *(format_steps(results.where(shape=name, dim=dim)) for name in SOLIDS),
             f'{bound(dim):.1e}',
         ]
         for dim in DIMENSIONS

@@ -1,10 +1,10 @@
 """
-The relaxation time against the conductance.
+Relaxation time of Hit-and-Run against conductance.
 
-Both follow from the flow between the cells of a lattice, and the time is measured besides, by the
-moves of chains between cells. Cheeger's inequality holds the time between 1 / (2 Phi) and
-2 / Phi^2 (Lawler and Sokal 1988): the one where a single door is all that takes time, towards the
-other where a set is long.
+Both are computed from the flow between the cells of a lattice; the time is also measured, from the
+moves of chains between cells. By Cheeger's inequality the time lies between 1 / (2 Phi) and
+2 / Phi^2 (Lawler and Sokal 1988): near the first where one narrow door is the only obstacle to
+mixing, nearer the second in long sets.
 """
 
 from functools import cache
@@ -15,17 +15,17 @@ from hnr_planner.core.theory import best_cut, cell_flow
 from hnr_planner.drawing import FAINT_INK
 from hnr_planner.experiments.figures import draw_profile, legend, Look, style
 from hnr_planner.experiments.mixing.sets import planar_sets
-from hnr_planner.experiments.mixing.variation import in_words
+from hnr_planner.experiments.mixing.variation import format_steps
 from hnr_planner.experiments.results import markdown, Mean, Results
 from matplotlib.axes import Axes
 import numpy as np
 
-#: The flow is computed in cells so many times finer along each axis, by so many lines.
-FINER, N_LINES = 4, 1 << 18
-#: Draws of each chain that moves are counted in; their lag is this part of the computed time, and
-#: at least so many steps: what cells hide of a fast walk fades with the lag.
-N_DRAWS, LAG, LEAST_LAG = 1000, 0.5, 8
-#: The sets, by the first word of their names.
+#: Refinement of the lattice along each axis, and number of lines, for the computed flow.
+REFINEMENT, N_LINES = 4, 1 << 18
+#: Draws of each chain in which moves are counted; lag of a move as a fraction of the computed
+#: time, and its minimum [steps]: the error made by cells falls with the lag.
+N_DRAWS, LAG, MIN_LAG = 1000, 0.5, 8
+#: Looks of the sets, by the first word of their names.
 LOOKS = {
     'L': Look('L', '#CC79A7', 'D'),
     'star': Look('star', '#E69F00', '^'),
@@ -35,7 +35,7 @@ LOOKS = {
 
 
 class Computed(NamedTuple):
-    """The conductance of the best cut of a set, and its relaxation time [steps]."""
+    """Conductance of the best cut of a set, and relaxation time [steps]."""
 
     conductance: float
     relaxation: float
@@ -43,33 +43,33 @@ class Computed(NamedTuple):
 
 @cache
 def computed(name: str) -> Computed:
-    """Compute both from the flow of Hit-and-Run."""
+    """Compute conductance and relaxation time of a set from the flow of Hit-and-Run."""
     mixing_set = planar_sets()[name]
     rows, columns = mixing_set.lattice
-    flow = cell_flow(mixing_set.space, (FINER * rows, FINER * columns), N_LINES)
+    flow = cell_flow(mixing_set.space, (REFINEMENT * rows, REFINEMENT * columns), N_LINES)
     return Computed(best_cut(flow).conductance, flow.relaxation_time)
 
 
 def measured(name: str, chains: Chains) -> float:
-    """Measure the relaxation time of Hit-and-Run by chains that have mixed."""
+    """Measure the relaxation time [steps] of Hit-and-Run, continuing chains that have mixed."""
     mixing_set = planar_sets()[name]
     draws, _ = walk_on(mixing_set.space, chains, N_DRAWS)
     cells = mixing_set.cells(draws.reshape(-1, 2)).reshape(draws.shape[:2])
-    return relaxation_time(cells, max(LEAST_LAG, round(LAG * computed(name).relaxation)))
+    return relaxation_time(cells, max(MIN_LAG, round(LAG * computed(name).relaxation)))
 
 
 def draw_relaxation(axes: Axes, results: Results) -> None:
-    """Draw what was measured over 1 / Phi, and Cheeger's inequality."""
+    """Draw measured relaxation times against 1 / Phi, with the bounds of Cheeger's inequality."""
     for word, look in LOOKS.items():
         names = [name for name in planar_sets() if name.split()[0] == word]
-        places = [1.0 / computed(name).conductance for name in names]
-        draw_profile(axes, places, [_mean(results, name) for name in names], look)
+        inverse = [1.0 / computed(name).conductance for name in names]
+        draw_profile(axes, inverse, [_mean(results, name) for name in names], look)
     reach = np.geomspace(4.0, 160.0, 2)
-    for bound, line, words in (
+    for bound, line, label in (
         (reach / 2.0, ':', '1 / (2 \u03a6)'),
         (2.0 * reach**2, '--', '2 / \u03a6\u00b2'),
     ):
-        axes.plot(reach, bound, line, color=FAINT_INK, linewidth=1.2, label=words)
+        axes.plot(reach, bound, line, color=FAINT_INK, linewidth=1.2, label=label)
     axes.set(xscale='log', yscale='log')
     axes.minorticks_off()
     style(axes, 'Relaxation time of Hit-and-Run', '1 / \u03a6, of the best cut', 'steps')
@@ -77,13 +77,13 @@ def draw_relaxation(axes: Axes, results: Results) -> None:
 
 
 def relaxation_table(results: Results) -> str:
-    """Return what was computed and what was measured."""
+    """Return a table of conductances, computed and measured times, and mixing steps."""
     header = ['set', '\u03a6', '1 / (2 \u03a6)', 'relaxation time, computed', 'measured', 'steps']
     rows = []
     for name in planar_sets():
         conductance, relaxation = computed(name)
         half = f'{0.5 / conductance:.2f}'
-        mixed = in_words(results.where(shape=name, walk='hit_and_run'))
+        mixed = format_steps(results.where(shape=name, walk='hit_and_run'))
         times = half, f'{relaxation:.2f}', _mean(results, name), mixed
         rows.append([name, f'{conductance:.4f}', *times])
     return markdown(header, rows)

@@ -1,8 +1,8 @@
 """
-Sets to mix in: where walks begin, and cells whose shares of the volume are known.
+Sets in which mixing is measured: a start, and cells whose shares of the volume are known.
 
-What mixes slowly has to show in the cells. Those of a set in the plane are the squares of a
-lattice; those of a solid, in ``solids``, follow the way that leads away from the start.
+The cells must resolve the slowest direction of mixing. In the plane they are the squares of a
+lattice; in solids (module ``solids``) they are slices along the way from the start.
 """
 
 from collections.abc import Callable, Sequence
@@ -19,7 +19,7 @@ Floats = NDArray[np.float64]
 Starts = Callable[[int, np.random.Generator], Floats]
 Cells = Callable[[Floats], NDArray[np.int64]]
 
-#: Chains for each cell: the floor of the total variation is then .04 in every set.
+#: Number of chains for each cell: gives a floor of the total variation of .04 in every set.
 CHAINS_PER_CELL = 100
 #: Widths of the door between two rooms of 1 m x 1 m, and half the thickness of their wall [m].
 DOORS = (0.05, 0.1, 0.2, 0.4)
@@ -28,27 +28,27 @@ WALL = 1e-6
 NOTCH = 0.35
 #: Width of the spirals' corridor, thickness of their walls, and side of a grid's cell [m].
 WIDTH, THICKNESS, RESOLUTION = 1.2, 0.1, 0.05
-#: Spirals, by how many corridors wide their square is.
+#: Sizes of the spirals: width of the square, in corridors.
 TURNS = (4, 6, 8)
 
 
 @dataclass(frozen=True)
 class MixingSet:
     """
-    A set, where the chains begin, and cells.
+    A set with the start of the chains and a partition into cells.
 
     Attributes
     ----------
     space : Space
         The set.
     starts : callable
-        ``starts(n_chains, rng)`` gives a point (dim,) for all chains, or one for each.
+        ``starts(n_chains, rng)`` returns one point (dim,) for all chains, or (n_chains, dim).
     cells : callable
-        Numbers (k,) of the cells that points (k, dim) are in.
+        Returns the index (k,) of the cell of each point (k, dim).
     shares : (n_cells,)
-        Part of the set's volume in each cell.
+        Fraction of the set's volume in each cell.
     lattice : (rows, columns)
-        Squares that the bounds of a set in the plane are cut into; of solids there are none.
+        Squares that the bounds of a set in the plane are divided into; (0, 0) for solids.
 
     """
 
@@ -60,18 +60,18 @@ class MixingSet:
 
     @property
     def n_chains(self) -> int:
-        """Chains of one run."""
+        """Number of chains of one run."""
         return CHAINS_PER_CELL * int(np.count_nonzero(self.shares))
 
 
 def at(point: Sequence[float] | Floats) -> Starts:
-    """Return the starts of chains that all begin at one point."""
+    """Return the ``starts`` of chains that all begin at one point (dim,)."""
     return lambda n_chains, rng: np.array(point, dtype=float)
 
 
 @cache
 def planar_sets() -> dict[str, MixingSet]:
-    """Build the sets in the plane, by their names."""
+    """Build all sets in the plane, by their names."""
     square, corner = shapely.box(0.0, 0.0, 2.0, 2.0), shapely.box(1.0, 1.0, 3.0, 3.0)
     ell = _of_polygon(square - corner, (1.99, 0.01), (4, 4))
     star = _of_polygon(_star(), (0.96, 0.0), (6, 6))
@@ -80,7 +80,7 @@ def planar_sets() -> dict[str, MixingSet]:
 
 
 def _rooms(door: float) -> shapely.Polygon:
-    """Build two unit squares, and a door in the middle of the wall between them."""
+    """Build two unit squares with a door of this width [m] in the wall between them."""
     rooms = shapely.box(0.0, 0.0, 2.0, 1.0)
     for bottom, top in ((-1.0, 0.5 - door / 2.0), (0.5 + door / 2.0, 2.0)):
         rooms -= shapely.box(1.0 - WALL, bottom, 1.0 + WALL, top)
@@ -88,7 +88,7 @@ def _rooms(door: float) -> shapely.Polygon:
 
 
 def _star() -> shapely.Polygon:
-    """Build a star of five rays, all of which its centre sees."""
+    """Build a star with five points, all visible from its centre."""
     angles = np.arange(10) * np.pi / 5.0
     radii = np.where(np.arange(10) % 2 == 0, 1.0, NOTCH)
     return shapely.Polygon(np.stack([radii * np.cos(angles), radii * np.sin(angles)], axis=1))
@@ -97,7 +97,7 @@ def _star() -> shapely.Polygon:
 def _of_polygon(
     polygon: shapely.Polygon, start: Sequence[float], lattice: tuple[int, int]
 ) -> MixingSet:
-    """Cut a polygon into squares, whose shares are areas of polygons."""
+    """Divide a polygon into the squares of a lattice, with exact areas as shares."""
     space = PolygonSpace(polygon)
     (left, bottom), (right, top) = space.bounds
     x, y = np.linspace(left, right, lattice[1] + 1), np.linspace(bottom, top, lattice[0] + 1)
@@ -107,7 +107,7 @@ def _of_polygon(
 
 
 def _spiral(turns: int) -> MixingSet:
-    """Build a spiral in a square so large that the lattice's lines lie within its walls."""
+    """Build a spiral ``turns`` corridors wide, such that the lattice's lines lie in its walls."""
     size = turns * (WIDTH + THICKNESS) + THICKNESS
     made = spiral(WIDTH, resolution=RESOLUTION, wall=THICKNESS, size=size)
     free = ~made.blocked[1:-1, 1:-1]  # without the outer half of the outer walls
@@ -119,6 +119,7 @@ def _spiral(turns: int) -> MixingSet:
 
 
 def _squares(space: Space, lattice: tuple[int, int]) -> Cells:
+    """Return the function from points (k, 2) to indices (k,) of the lattice's squares."""
     rows, columns = lattice
     lower, upper = space.bounds
 

@@ -1,7 +1,7 @@
 """
-Sets of any dimension, cut along the way that leads away from the corner where walks begin.
+Sets of any dimension, divided into cells along the way from the corner where walks start.
 
-Walks begin nine tenths of the way from the middle of a set to one of its corners.
+Walks start nine tenths of the way from the middle of a set to one of its corners.
 """
 
 from collections.abc import Callable
@@ -14,9 +14,9 @@ from numpy.typing import NDArray
 from scipy.interpolate import BSpline
 from scipy.special import betaincinv, ndtri
 
-#: How far the start is on the way from the middle to the corner.
+#: Position of the start on the way from the middle (0) to the corner (1).
 FAR = 0.9
-#: Cells along a way, and in each arm of the crossed beams.
+#: Number of cells along the way, and in each arm of the crossed beams.
 N_CELLS, N_DEPTHS = 10, 3
 #: Half the length, and half the width of the beams.
 LONG, WIDE = 1.0, 0.5
@@ -29,7 +29,7 @@ def cube(dim: int) -> MixingSet:
 
 
 def half_full_cube(dim: int) -> MixingSet:
-    """Build the cube, with starts that are uniform on the half around the corner: M is 2."""
+    """Build the unit cube, with uniform starts on the half around the corner: warmth M = 2."""
 
     def starts(n_chains: int, rng: np.random.Generator) -> Floats:
         points = rng.uniform(size=(n_chains, dim))
@@ -41,7 +41,7 @@ def half_full_cube(dim: int) -> MixingSet:
 
 
 def ball(dim: int) -> MixingSet:
-    """Build the unit ball; cells by the first coordinate, which has a beta law."""
+    """Build the unit ball; cells by the first coordinate, which has a beta distribution."""
     parts, shape = np.arange(1, N_CELLS) / N_CELLS, (dim + 1) / 2.0
     start = FAR * np.eye(dim)[0]
     edges = 2.0 * betaincinv(shape, shape, parts) - 1.0
@@ -49,7 +49,7 @@ def ball(dim: int) -> MixingSet:
 
 
 def simplex(dim: int) -> MixingSet:
-    """Build x >= 0, sum <= 1; cells by the first coordinate: a share (1 - t)^n is above t."""
+    """Build x >= 0, sum <= 1; cells by the first coordinate, which exceeds t on (1 - t)^n."""
     space = PolytopeSpace(np.vstack([-np.eye(dim), np.ones(dim)]), np.append(np.zeros(dim), 1.0))
     start = np.full(dim, (1.0 - FAR) / (dim + 1.0)) + FAR * np.eye(dim)[0]
     edges = 1.0 - (1.0 - np.arange(1, N_CELLS) / N_CELLS) ** (1.0 / dim)
@@ -72,14 +72,14 @@ def joined_boxes(dim: int) -> MixingSet:
 
 def crossed_beams(dim: int) -> MixingSet:
     """
-    Build a beam along each axis: star-shaped, 2 n arms around a cube that sees all of them.
+    Build a beam along each axis: a star-shaped set of 2 n arms around a central cube.
 
-    Cells are the cube, and pieces of equal length of the first arm, of the opposite one and of
-    all others together.
+    The cells are the cube, and sections of equal length: of the first arm, of the opposite arm,
+    and of all other arms together.
     """
     halves = WIDE + (LONG - WIDE) * np.eye(dim)
     space = UnionSpace(*(BoxSpace(-half, half) for half in halves))
-    arm = (LONG - WIDE) / (2.0 * WIDE)  # its volume, by that of the cube
+    arm = (LONG - WIDE) / (2.0 * WIDE)  # volume of an arm over that of the cube
     pieces = np.repeat([1.0, 1.0, 2.0 * dim - 2.0], N_DEPTHS) * arm / N_DEPTHS
     shares = np.append(pieces, 1.0) / (1.0 + 2.0 * dim * arm)
 
@@ -106,12 +106,12 @@ SOLIDS: dict[str, Callable[[int], MixingSet]] = {
 
 @cache
 def solid(name: str, dim: int) -> MixingSet:
-    """Build a solid by its name."""
+    """Build a solid of ``SOLIDS`` by its name."""
     return SOLIDS[name](dim)
 
 
 def _by_first(edges: Floats) -> tuple[Cells, Floats]:
-    """Return cells by the first coordinate, and equal shares."""
+    """Return cells between edges of the first coordinate, and equal shares."""
     n_cells = len(edges) + 1
     return lambda points: np.searchsorted(edges, points[:, 0]), np.full(n_cells, 1.0 / n_cells)
 
@@ -120,8 +120,8 @@ def _by_sum(dim: int, n_cells: int) -> tuple[Cells, Floats]:
     """
     Return cells of the unit cube by the sum of the coordinates, and their shares.
 
-    The density of the sum is the B-spline over the knots 0, 1, ..., n. The edges would make the
-    shares equal if the sum were normal; the shares are exact.
+    The density of the sum is the B-spline over the knots 0, 1, ..., n. The edges are quantiles of
+    the normal approximation; the shares are exact.
     """
     edges = dim / 2.0 + np.sqrt(dim / 12.0) * ndtri(np.arange(1, n_cells) / n_cells)
     below = BSpline.basis_element(np.arange(dim + 1.0)).antiderivative()(edges)

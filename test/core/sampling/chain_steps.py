@@ -15,7 +15,7 @@ Step = Callable[[Floats, np.random.Generator], Floats]
 
 
 def step_of(walk: str | Walk, space: Space, n_steps: int = 1) -> Step:
-    """Return what takes points (k, dim), caller's frame, some steps of a walk on."""
+    """Return the function that moves points (k, dim), caller's frame, by steps of a walk."""
     compiled = make_walk(walk).compiled(space)
 
     def step(points: Floats, rng: np.random.Generator) -> Floats:
@@ -31,7 +31,7 @@ def step_of(walk: str | Walk, space: Space, n_steps: int = 1) -> Step:
 @kernel
 def _step_from_each(space, walk, points, chain, u, n_steps):
     for k in range(len(points)):
-        here = open_cache(space, points[k], chain.memory)
-        refresh(space, here)
+        cache = open_cache(space, points[k], chain.memory)
+        refresh(space, cache)
         for _ in range(n_steps):
-            take_step(walk, space, here, u, chain.rng, chain.counts)
+            take_step(walk, space, cache, u, chain.rng, chain.counts)

@@ -1,4 +1,4 @@
-"""The sets that walks are tested on: as regions, and as spaces of the package."""
+"""Sets for the tests of walks, each as a brute-force region and as a space of the package."""
 
 from functools import cache
 from test.laws import maps
@@ -29,7 +29,7 @@ from shapely import Polygon
 
 
 class GateSet(NamedTuple):
-    """A set, and points from which single steps are looked at."""
+    """A set, and points from which single steps are tested."""
 
     region: Region
     space: Space
@@ -38,21 +38,21 @@ class GateSet(NamedTuple):
 
 @cache
 def u_shape() -> GateSet:
-    """Give two arms; a point in one of them, and one between both."""
+    """Return two arms; a point in one of them, and one between both."""
     points = np.array([[0.7, 8.3], [3.2, 1.1]])
     return GateSet(CellRegion(maps.U_SHAPE), GridSpace.from_blocked(maps.U_SHAPE), points)
 
 
 @cache
 def two_rooms() -> GateSet:
-    """Give rooms with a door, furnished; a point beside the door, and one in a room."""
+    """Return rooms with a door, furnished; a point beside the door, and one in a room."""
     points = np.array([[4.6, 3.3], [8.9, 5.2]])
     return GateSet(CellRegion(maps.TWO_ROOMS), GridSpace.from_blocked(maps.TWO_ROOMS), points)
 
 
 @cache
 def hall_and_dome() -> GateSet:
-    """Give a room, a corridor and a disc in line; a point that sees through the corridor."""
+    """Return a room, a corridor and a disc in line; a point that sees through the corridor."""
     corners = np.array([[[0.0, 0.0], [1.0, 1.0]], [[0.9, 0.4], [2.2, 0.6]]])
     centre, radius = np.array([2.5, 0.5]), 0.5
     region = UnionRegion(
@@ -64,7 +64,7 @@ def hall_and_dome() -> GateSet:
 
 @cache
 def court_with_pillars() -> GateSet:
-    """Give a polygon with a notch and two holes; a point between the notch and a hole."""
+    """Return a polygon with a notch and two holes; a point between the notch and a hole."""
     outline = np.array([[0, 0], [4, 0], [4, 3], [2.2, 3], [2, 1.2], [1.8, 3], [0, 3.0]])
     pillar = np.array([[0.5, 0.4], [1.4, 0.5], [0.8, 1.3]])
     wall = np.array([[2.6, 0.8], [3.6, 0.9], [3.6, 1.0], [2.6, 0.9]])
@@ -76,7 +76,7 @@ def court_with_pillars() -> GateSet:
 
 @cache
 def banana() -> GateSet:
-    """Give a bent box in space; a point at its inner side."""
+    """Return a bent box in space; a point at its inner side."""
     low, high, bend = np.array([-1.0, -0.3, -0.2]), np.array([1.0, 0.3, 0.2]), 0.8
     region = BentRegion(low, high + [0.0, 0.0, bend], (6, 2, 6), low, high, bend)
     return GateSet(region, ShearedSpace(BoxSpace(low, high), bend), np.array([[0.1, 0.1, 0.15]]))
@@ -84,7 +84,7 @@ def banana() -> GateSet:
 
 @cache
 def stone_without_its_core() -> GateSet:
-    """Give a cube with a corner cut off, less a ball in it; a point beside the ball."""
+    """Return a cube with a corner cut off, less a ball in it; a point beside the ball."""
     normals = np.vstack([np.eye(3), -np.eye(3), np.ones((1, 3))])
     offsets = np.array([1, 1, 1, 0, 0, 0, 2.4])
     centre, radius = np.array([0.5, 0.45, 0.4]), 0.38
@@ -98,7 +98,7 @@ def stone_without_its_core() -> GateSet:
 @cache
 def box_without_balls() -> GateSet:
     """
-    Give a 10-dimensional cube less ten balls, a quarter of it; of 1000 points the nearest to one.
+    Return a 10-D cube less ten balls, a quarter of it; of 1000 points the nearest to a ball.
 
     Every fifth chord ends at a ball.
     """

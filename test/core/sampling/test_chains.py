@@ -1,4 +1,4 @@
-"""Chains: resumed to the last bit, true to what they remember, counted, and loud when stuck."""
+"""Chains: resumed to the last bit, with correct caches and counts, and an error when stuck."""
 
 from pathlib import Path
 import pickle
@@ -117,19 +117,19 @@ def test_a_chain_may_change_its_walk():
     for walk in (*WALKS, *WALKS):
         draws, chains = walk_on(space, chains, 500, walk=walk)
         assert space.contains(draws[0]).all()
-        assert_remembers(space, chains)
+        assert_cache_is_right(space, chains)
 
 
-# -- what polytopes remember ----------------------------------------------------------------------
+# -- what polytopes cache ----------------------------------------------------------------------
 
 
-def assert_remembers(space: PolytopeSpace, chains: Chains) -> None:
-    """Hold the distances that a polytope remembers to those from the point."""
+def assert_cache_is_right(space: PolytopeSpace, chains: Chains) -> None:
+    """Assert that the cached distances to the planes are those of the points."""
     first = space.dim
     end = first + len(space.data.offsets)
-    remembered = chains.memory[:, first:end]
+    cached = chains.memory[:, first:end]
     slacks = space.data.offsets - chains.points @ space.data.normals.T
-    np.testing.assert_allclose(remembered, slacks, rtol=0.0, atol=space.data.doubt)
+    np.testing.assert_allclose(cached, slacks, rtol=0.0, atol=space.data.doubt)
 
 
 @EACH_POLYTOPE
@@ -139,7 +139,7 @@ def test_distances_go_along_with_the_chain(name: str, walk):
     chains = begin_chains(space, start, seed=2)
     for n_steps in (1, 5, REFRESH - 10, 3 * REFRESH + 7):
         _, chains = walk_on(space, chains, 1, walk=walk, thin=n_steps)
-        assert_remembers(space, chains)
+        assert_cache_is_right(space, chains)
 
 
 @EACH_POLYTOPE
@@ -147,11 +147,11 @@ def test_chords_from_memory_are_those_of_the_space(name: str):
     space, start = SPACES[name]
     rng = np.random.default_rng(6)
     for point in sample(space, start, 50, thin=5, seed=4)[0]:
-        here = open_cache(space.data, point, np.zeros(space.dim + 3 * len(space.data.offsets)))
-        refresh(space.data, here)
+        cache = open_cache(space.data, point, np.zeros(space.dim + 3 * len(space.data.offsets)))
+        refresh(space.data, cache)
         axis = int(rng.integers(space.dim))
         for u, which in ((rng.normal(size=space.dim), NO_AXIS), (np.eye(space.dim)[axis], axis)):
-            assert chord_cached(space.data, here, u, which) == pytest.approx(
+            assert chord_cached(space.data, cache, u, which) == pytest.approx(
                 space.chord(point, u), rel=1e-12
             )
 

@@ -1,4 +1,4 @@
-"""Draws of all free space: uniform over every part, and a walk within each."""
+"""Draws of all free space: uniform over all components, and a walk within each."""
 
 from collections.abc import Callable
 from test.brute_force import path_collisions
@@ -6,11 +6,14 @@ from test.laws import maps
 import threading
 
 from hnr_planner.core import (
+    BoxSpace,
     Cancelled,
+    DifferenceSpace,
     FreeSpaceDraws,
     GridSpace,
     RequestError,
     sample_free_space,
+    Space,
     SpaceError,
     WALKS,
 )
@@ -20,6 +23,7 @@ import numpy as np
 import pytest
 from scipy import ndimage, stats
 
+#: Two rooms with a door, two cupboards of 4 cells, and corners that touch.
 OCCUPIED = maps.drawn(
     '.....#..#..',
     '.#...#..#..',
@@ -29,12 +33,11 @@ OCCUPIED = maps.drawn(
     '..#..#...#.',
     '...#.#.....',
 )
-"""Two rooms with a door, two cupboards of 4 cells, and corners that touch."""
 RESOLUTION, ORIGIN = 0.1, (1.0, -3.0, 0.6)
 SPACE = GridSpace.from_blocked(OCCUPIED, RESOLUTION, ORIGIN)
-PARTS, N_PARTS = ndimage.label(~OCCUPIED)
+COMPONENTS, N_COMPONENTS = ndimage.label(~OCCUPIED)
+#: Thirteen p-values of correct draws are compared with it: one run in a million would fail.
 ALPHA = 1e-6 / 13
-"""Thirteen p-values of right draws are compared with it: one run in a million would fail."""
 N_CHAINS, N_DRAWS = 8_000, 3
 
 
@@ -73,7 +76,7 @@ def many(**arguments: object) -> FreeSpaceDraws:
 
 
 @pytest.mark.parametrize('walk', WALKS)
-def test_every_draw_is_uniform_over_all_parts(walk: str) -> None:
+def test_every_draw_is_uniform_over_all_components(walk: str) -> None:
     # 8,000 independent chains over 57 cells; the law of the first draw, and of the last.
     draws = many(walk=walk)
     for number in (0, N_DRAWS - 1):
@@ -81,20 +84,20 @@ def test_every_draw_is_uniform_over_all_parts(walk: str) -> None:
         assert within_cells(draws.points[:, number]) > ALPHA
 
 
-def test_each_draw_picks_its_part_anew() -> None:
-    parts = many().parts
-    pairs = stats.contingency.crosstab(parts[:, 0], parts[:, 1]).count
+def test_components_of_consecutive_draws_are_independent() -> None:
+    components = many().components
+    pairs = stats.contingency.crosstab(components[:, 0], components[:, 1]).count
     assert stats.chi2_contingency(pairs).pvalue > ALPHA
 
 
-def the_largest_part_only(free, n_draws, rng):
-    """Pick cells of one part."""
+def the_largest_component_only(free, n_draws, rng):
+    """Pick cells of one component."""
     labels = SPACE.data.labels.flat[free]
     return pick_cells(free[labels == np.bincount(labels).argmax()], n_draws, rng)
 
 
-def each_part_alike(free, n_draws, rng):
-    """Pick every part as often as every other."""
+def each_component_alike(free, n_draws, rng):
+    """Pick all components with equal probability, whatever their areas."""
     labels = SPACE.data.labels.flat[free]
     return pick_cells(free[labels == rng.integers(1, labels.max() + 1)], n_draws, rng)
 
@@ -107,11 +110,11 @@ def the_middle(cell, shape, rng):
 @pytest.mark.parametrize(
     ('name', 'wrong'),
     [
-        ('pick_cells', the_largest_part_only),
-        ('pick_cells', each_part_alike),
+        ('pick_cells', the_largest_component_only),
+        ('pick_cells', each_component_alike),
         ('point_in_cell', the_middle),
     ],
-    ids=['the largest part only', 'each part alike', 'the middle'],
+    ids=['the largest component only', 'each component alike', 'the middle'],
 )
 def test_wrong_starts_are_caught(
     name: str, wrong: Callable, monkeypatch: pytest.MonkeyPatch
@@ -122,20 +125,20 @@ def test_wrong_starts_are_caught(
 
 
 @pytest.mark.parametrize('walk', WALKS)
-def test_every_draw_is_free_and_in_the_part_it_names(walk: str) -> None:
-    points, parts, _ = sample_free_space(SPACE, 500, walk=walk, n_chains=2, seed=1)
-    assert points.shape == (2, 500, 2) and parts.shape == (2, 500)
+def test_every_draw_is_free_and_in_the_component_it_names(walk: str) -> None:
+    points, components, _ = sample_free_space(SPACE, 500, walk=walk, n_chains=2, seed=1)
+    assert points.shape == (2, 500, 2) and components.shape == (2, 500)
     column, row = np.moveaxis(np.floor(in_cells(points)).astype(int), -1, 0)
-    truth = PARTS[row, column]
-    assert len(set(zip(truth.flat, parts.flat, strict=True))) == N_PARTS
+    truth = COMPONENTS[row, column]
+    assert len(set(zip(truth.flat, components.flat, strict=True))) == N_COMPONENTS
 
 
-def test_draws_of_a_part_follow_each_other_along_free_segments() -> None:
+def test_draws_of_a_component_follow_each_other_along_free_segments() -> None:
     draws = sample_free_space(SPACE, 400, seed=2)
     (points,), (previous,) = draws.points, draws.previous
-    assert (previous == -1).sum() == N_PARTS
+    assert (previous == -1).sum() == N_COMPONENTS
     assert (previous < np.arange(400)).all()
-    assert len(np.unique(previous[previous >= 0])) == 400 - N_PARTS, 'none follows twice'
+    assert len(np.unique(previous[previous >= 0])) == 400 - N_COMPONENTS, 'none follows twice'
     for number in np.flatnonzero(previous >= 0):
         segment = [points[previous[number]], points[number]]
         assert not path_collisions(segment, OCCUPIED, RESOLUTION, ORIGIN)
@@ -151,10 +154,10 @@ def test_fewer_draws_and_chains_are_the_first_of_more() -> None:
 
 
 def test_thin_leaves_out_steps_and_changes_none() -> None:
-    one_part = GridSpace.from_blocked(maps.U_SHAPE)
-    every = sample_free_space(one_part, 31, seed=3).points
+    one_component = GridSpace.from_blocked(maps.U_SHAPE)
+    every = sample_free_space(one_component, 31, seed=3).points
     np.testing.assert_array_equal(
-        sample_free_space(one_part, 11, thin=3, seed=3).points, every[:, ::3]
+        sample_free_space(one_component, 11, thin=3, seed=3).points, every[:, ::3]
     )
 
 
@@ -176,6 +179,26 @@ def test_cancelled_work_ends_soon() -> None:
     threading.Timer(0.2, cancel.set).start()
     with pytest.raises(Cancelled):  # 10^12 steps otherwise
         sample_free_space(SPACE, 1_000_000, thin=1_000_000, cancel=cancel)
+
+
+def test_a_sequence_or_a_generator_is_a_seed() -> None:
+    for seed in (np.random.SeedSequence(7), np.random.default_rng(7)):
+        draws = sample_free_space(SPACE, 20, seed=seed)
+        again = sample_free_space(SPACE, 20, seed=draws.seed)
+        np.testing.assert_array_equal(again.points, draws.points)
+
+
+@pytest.mark.parametrize(
+    'space',
+    [
+        BoxSpace([0.0], [1.0]),
+        DifferenceSpace(BoxSpace([0] * 3, [1] * 3), BoxSpace([0.4, -1, -1], [0.6, 2, 2])),
+    ],
+)
+def test_a_space_that_is_no_grid_is_refused(space: Space) -> None:
+    name = type(space).__name__
+    with pytest.raises(RequestError, match=f'needs a GridSpace, .* got a {name}: sample'):
+        sample_free_space(space, 100, seed=1)
 
 
 def test_nothing_free_is_refused() -> None:

@@ -71,10 +71,10 @@ def test_steps_keep_the_uniform_law(walk: str):
 @kernel
 def _step_from_half_of_memory(space, walk, points, chain, u):
     for k in range(len(points)):
-        here = open_cache(space, points[k], chain.memory)
-        refresh(space, here)
-        here.slacks[0] *= 0.5
-        take_step(walk, space, here, u, chain.rng, chain.counts)
+        cache = open_cache(space, points[k], chain.memory)
+        refresh(space, cache)
+        cache.slacks[0] *= 0.5
+        take_step(walk, space, cache, u, chain.rng, chain.counts)
 
 
 def test_one_wrong_distance_is_caught():

@@ -3,7 +3,7 @@
 from itertools import pairwise
 from test.laws import maps
 
-from hnr_planner.core import GridSpace, RequestError, sample, WALKS
+from hnr_planner.core import begin_chains, GridSpace, RequestError, sample, WALKS
 import numpy as np
 import pytest
 
@@ -45,6 +45,25 @@ def test_burn_in_and_thin_leave_out_steps_and_change_none():
     every = sample(SPACE, START, 30, seed=3)
     np.testing.assert_array_equal(sample(SPACE, START, 10, thin=3, seed=3), every[:, 2::3])
     np.testing.assert_array_equal(sample(SPACE, START, 20, burn_in=10, seed=3), every[:, 10:])
+
+
+@pytest.mark.parametrize('draw', [sample, begin_chains], ids=['sample', 'begin_chains'])
+def test_a_seed_is_a_number_a_sequence_or_a_generator(draw):
+    def drawn(seed):
+        found = (
+            draw(SPACE, START, 5, seed=seed) if draw is sample else draw(SPACE, START, seed=seed)
+        )
+        return found if draw is sample else found.streams
+
+    sequence = np.random.SeedSequence(8)
+    np.testing.assert_array_equal(drawn(sequence), drawn(sequence))
+    first, second = sequence.spawn(2)
+    assert (drawn(first) != drawn(second)).any()
+    generator, twin = np.random.default_rng(8), np.random.default_rng(8)
+    once = drawn(generator)
+    np.testing.assert_array_equal(once, drawn(twin))
+    assert (once != drawn(generator)).any(), 'a generator goes on'
+    assert (drawn(None) != drawn(None)).any()
 
 
 def test_no_draws_are_no_error():

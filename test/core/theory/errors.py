@@ -1,5 +1,5 @@
 """
-What the paper prints, and what we find: one function for each place that is looked at.
+Errors of the paper: the printed values and our values, one function for each statement.
 
 Each returns numbers by name; ``test_paper.py`` says what must hold of them, and
 ``test_page.py`` that ``docs/theory.md`` prints them.
@@ -8,7 +8,7 @@ Each returns numbers by name; ``test_paper.py`` says what must hold of them, and
 from fractions import Fraction
 from functools import cache
 import math
-from test.core.theory.sets import DISC, ELL, HALF_DISCS, PLUS
+from test.core.theory.sets import DISC, HALF_DISCS, L_SET, PLUS
 
 from hnr_planner.core import BallSpace, PolytopeSpace
 from hnr_planner.core.theory import (
@@ -127,7 +127,7 @@ def cap():
 
 @cache
 def detours():
-    """Return d and d-tilde of points that see each other, in the disc and amid the plus."""
+    """Return d and d-tilde of mutually visible points, in the disc and in the plus."""
     ends = (-0.5, 0), (0.5, 0)
     amid = (3.4, 3.4), (3.6, 3.6)
     return {
@@ -166,7 +166,7 @@ def saddle():
 
 @cache
 def idle_terms():
-    """Return what stands beside the terms that never bind."""
+    """Return the terms of Lemmas 11 to 13 that never bind, and those that do."""
     return {
         'sin(pi/8) / kappa at most': math.sin(math.pi / 8) / (2 * math.pi),
         'pi / 4': math.pi / 4,
@@ -190,7 +190,7 @@ def hull():
     found = {}
     for scale in (1.0, 2.0):
         corners, sides = scale * np.array([(0.5, 0.5), (1.2, 0.4), (0.4, 1.2)]), []
-        ell = type(ELL).from_blocked(ELL.blocked, scale)
+        ell = type(L_SET).from_blocked(L_SET.blocked, scale)
         for i, j in ((0, 1), (0, 2), (1, 2)):
             away = corners[j] - corners[i]
             away /= np.linalg.norm(away)
@@ -272,7 +272,7 @@ def hits(dim, radius, small):
 
 @cache
 def plane_angles():
-    """Return what Lemma 11 loses by taking sines for angles, and angles in a plane for uniform."""
+    """Return the factor that Lemma 11 loses: sines for angles, uniform angles in a plane."""
     return {
         f'loss, n = {dim}': mended_view_bound(dim, 10.0, 0.1, 1.0) / view_bound(10.0, 0.1, 1.0)
         for dim in DIMENSIONS

@@ -1,7 +1,7 @@
-"""Two planning problems: how many transitions walks need, and what the theory says of it."""
+"""Two planning problems, with measured transitions and with those computed from the flow."""
 
 from functools import cache
-from test.core.theory.sets import Points, two_rooms, walked, YOU
+from test.core.theory.sets import Points, two_rooms, U_SET, walked
 from typing import NamedTuple
 
 from hnr_planner.core import BoxSpace, Space
@@ -19,7 +19,7 @@ N_LINES = 1 << 17
 
 
 class Problem(NamedTuple):
-    """Walk in ``space``, cut into cells of ``shape``, from a box into another."""
+    """A walk in ``space``, divided into cells of ``shape``, from one box into another."""
 
     space: Space
     shape: tuple[int, int]
@@ -27,14 +27,14 @@ class Problem(NamedTuple):
     goal: BoxSpace
 
 
-AROUND_THE_YOU = Problem(YOU, (18, 14), BoxSpace((0, 8), (1, 9)), BoxSpace((5, 8), (7, 9)))
+AROUND_THE_U = Problem(U_SET, (18, 14), BoxSpace((0, 8), (1, 9)), BoxSpace((5, 8), (7, 9)))
 THROUGH_THE_DOOR = Problem(
     two_rooms(0.2), (10, 20), BoxSpace((0, 0), (0.2, 0.2)), BoxSpace((1.8, 0.8), (2, 1))
 )
 
 
-class Said(NamedTuple):
-    """What the cells say: see ``path_length``."""
+class Theory(NamedTuple):
+    """Quantities of ``path_length`` computed on cells."""
 
     fraction: float
     expected: float
@@ -46,15 +46,15 @@ class Said(NamedTuple):
 
 
 @cache
-def said_of(problem: Problem) -> Said:
-    """Return what follows from the flow between cells."""
+def theory_of(problem: Problem) -> Theory:
+    """Compute the quantities of a problem from the flow between its cells."""
     flow = cell_flow(problem.space, problem.shape, N_LINES)
     begin, end = problem.start.contains(flow.centre), problem.goal.contains(flow.centre)
     area = flow.area.sum()
     fraction = flow.area[end].sum() / area
     expected = expected_transitions(flow, end)
     mixing = mixing_time(flow, int(np.flatnonzero(begin)[0]))
-    return Said(
+    return Theory(
         fraction,
         flow.area[begin] @ expected[begin] / flow.area[begin].sum(),
         flow.area @ expected / area,

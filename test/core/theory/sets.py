@@ -1,4 +1,4 @@
-"""Sets that the quantities are looked at on, small enough to be worked out by hand."""
+"""Example sets for the quantities, simple enough for calculations by hand."""
 
 from test.laws.maps import drawn, U_SHAPE
 
@@ -13,16 +13,17 @@ DISC = BallSpace((0.0, 0.0), 1.0)
 SQUARE = BoxSpace((0.0, 0.0), (1.0, 1.0))
 BALL = BallSpace((0.0, 0.0, 0.0), 1.0)
 CUBE = BoxSpace((0.0, 0.0, 0.0), (1.0, 1.0, 1.0))
-ELL = GridSpace.from_blocked(drawn('.#', '..'))
-"""Three unit squares around the corner (1, 1)."""
+#: Three unit squares around the corner (1, 1).
+L_SET = GridSpace.from_blocked(drawn('.#', '..'))
+#: Two crossing corridors of width 1 and length 7.
 PLUS = GridSpace.from_blocked(drawn('###.###', '###.###', '###.###', '.......', *['###.###'] * 3))
-"""Two corridors of width 1 and length 7 that cross."""
-YOU = GridSpace.from_blocked(U_SHAPE)
+#: Two arms of 2 x 6 on a base of 7 x 3.
+U_SET = GridSpace.from_blocked(U_SHAPE)
+#: A half disc of radius 6 above one of radius 1: every chord through 0 is divided 6 to 1.
 HALF_DISCS = UnionSpace(
     DifferenceSpace(BallSpace((0.0, 0.0), 6.0), BoxSpace((-7.0, -7.0), (7.0, 0.0))),
     BallSpace((0.0, 0.0), 1.0),
 )
-"""A half disc of radius 6 above one of radius 1: every chord through 0 is divided 6 to 1."""
 
 
 def two_rooms(door: float) -> DifferenceSpace:
@@ -47,6 +48,6 @@ def walked(space: Space, points: Points, seed: int, n_steps: int = 1) -> Points:
 
 
 def scattered(space: Space, k: int, seed: int) -> Points:
-    """Return k uniform points (k, dim)."""
+    """Return k uniform points (k, dim) of the set."""
     drawn = np.random.default_rng(seed).uniform(*space.bounds, size=(20 * k, space.dim))
     return drawn[space.contains(drawn)][:k]

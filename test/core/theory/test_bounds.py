@@ -1,4 +1,4 @@
-"""The bounds: units, order, and what they say of sets that can be measured."""
+"""The bounds: units, order, and comparison with measured sets."""
 
 import math
 from test.core.theory.sets import DISC
@@ -30,8 +30,8 @@ import pytest
 from scipy.spatial.distance import pdist
 
 RADIUS = math.pi**-0.5
+#: A disc of area 1 under the shear y + 2 x^2.
 BANANA = ShearedSpace(BallSpace((0.0, 0.0), RADIUS), 2.0)
-"""A disc of area 1 under y + 2 x^2."""
 
 
 @pytest.mark.parametrize('dim', [2, 3, 12, 200])
@@ -83,7 +83,7 @@ def test_what_has_no_curvature_is_refused():
 
 
 def test_the_bounds_hold_on_a_set_that_is_not_convex():
-    """The measured cut of the banana is above every version of Lemma 13, by ten magnitudes."""
+    """The measured cut of the banana exceeds every version of Lemma 13 by ten magnitudes."""
     image = ball_image(BANANA)
     cut = best_cut(cell_flow(BANANA, (12, 12), 1 << 16)).conductance
     assert cut > 0.1
@@ -93,7 +93,7 @@ def test_the_bounds_hold_on_a_set_that_is_not_convex():
 
 @pytest.mark.parametrize('apart', [0.02, 0.08])
 def test_lemma_11_on_a_set_that_is_not_convex(apart):
-    """Points of the banana beside each other; and two in its arms, that miss some."""
+    """Neighbouring points of the banana; and two in its arms, whose views differ."""
     u = BANANA.image((-0.3, -0.1))
     v = u + (apart, 0.0)
     depth = np.linalg.norm(image_boundary(BANANA, 4000) - u, axis=1).min() - apart

@@ -1,7 +1,7 @@
 """The distance by chains: closed forms in convex sets, and bounds in others."""
 
 import math
-from test.core.theory.sets import DISC, ELL, PLUS, SQUARE, YOU
+from test.core.theory.sets import DISC, L_SET, PLUS, SQUARE, U_SET
 
 from hnr_planner.core import BoxSpace, PolygonSpace, RequestError
 from hnr_planner.core.theory import chain_distance, cross_ratio_distance, even_chain_distance
@@ -37,10 +37,10 @@ def test_even_parts_are_the_best_of_a_chord():
 
 def test_round_the_corner_of_an_ell():
     """By symmetry through the diagonal; the hull's distance is as large, so it is exact."""
-    lower, upper = chain_distance(ELL, (0.5, 1.5), (1.5, 0.5), 2)
+    lower, upper = chain_distance(L_SET, (0.5, 1.5), (1.5, 0.5), 2)
     assert lower == pytest.approx(4)
     assert upper == pytest.approx(4, rel=1e-4)
-    assert chain_distance(ELL, (0.5, 1.5), (1.5, 0.5), 1).upper == math.inf
+    assert chain_distance(L_SET, (0.5, 1.5), (1.5, 0.5), 1).upper == math.inf
 
 
 def test_a_polygon_is_the_same_as_its_grid():
@@ -49,7 +49,7 @@ def test_a_polygon_is_the_same_as_its_grid():
     for corners in (ring, ring[::-1]):
         ell = PolygonSpace(Polygon(corners))
         of_polygon = chain_distance(ell, (0.5, 1.9), (1.9, 0.5))
-        of_grid = chain_distance(ELL, (0.5, 1.9), (1.9, 0.5))
+        of_grid = chain_distance(L_SET, (0.5, 1.9), (1.9, 0.5))
         assert of_polygon.lower == pytest.approx(of_grid.lower, rel=1e-6)
         assert of_polygon.upper == pytest.approx(of_grid.upper, rel=1e-3)
 
@@ -57,9 +57,9 @@ def test_a_polygon_is_the_same_as_its_grid():
 @pytest.mark.parametrize('n_links', [3, 6, math.inf])
 def test_bounds_enclose_and_more_links_cost_less(n_links):
     u, v = (1, 8), (6, 8)
-    bounds = chain_distance(YOU, u, v, n_links)
+    bounds = chain_distance(U_SET, u, v, n_links)
     assert 0 < bounds.lower <= bounds.upper < math.inf
-    fewer = chain_distance(YOU, u, v, 3)
+    fewer = chain_distance(U_SET, u, v, 3)
     assert bounds.upper <= fewer.upper
     # Two corners, so a path of two corridors of 6 and a floor: 12 + 3 long or more.
     diameter = math.hypot(7, 9)

@@ -1,7 +1,7 @@
 """Flows between cells, cuts and their bracket; two rooms with a door against a closed form."""
 
 import math
-from test.core.theory.sets import BALL, CUBE, DISC, ELL, scattered, two_rooms, walked, YOU
+from test.core.theory.sets import BALL, CUBE, DISC, L_SET, scattered, two_rooms, U_SET, walked
 
 from hnr_planner.core import BoxSpace, RequestError
 from hnr_planner.core.theory import (
@@ -22,7 +22,7 @@ N_LINES = 1 << 17
 SMALL_DOOR = (2 * math.atan(0.5) + math.log(math.sqrt(5))) / (2 * math.pi)
 
 
-@pytest.mark.parametrize('space', [DISC, ELL, YOU], ids=['disc', 'ell', 'you'])
+@pytest.mark.parametrize('space', [DISC, L_SET, U_SET], ids=['disc', 'ell', 'you'])
 def test_flow_is_symmetric_and_keeps_the_area(space):
     flow = cell_flow(space, (6, 5), N_LINES)
     assert (flow.flow == flow.flow.T).all()
@@ -34,7 +34,7 @@ def test_flow_is_symmetric_and_keeps_the_area(space):
 
 def test_flow_between_cells_is_the_mean_of_the_steps():
     """P_u(A) by quadrature over angle, and over u by Gauss's rule in the cell."""
-    flow = cell_flow(YOU, (3, 7), 1 << 19)
+    flow = cell_flow(U_SET, (3, 7), 1 << 19)
     nodes, weights = np.polynomial.legendre.leggauss(4)
     box = BoxSpace((2, 0), (5, 3))
     into = box.contains(flow.centre)
@@ -44,7 +44,7 @@ def test_flow_between_cells_is_the_mean_of_the_steps():
         for x, p in zip(nodes, weights, strict=True):
             for y, q in zip(nodes, weights, strict=True):
                 u = low + ((x + 1) / 2, 3 * (y + 1) / 2)
-                mean += p * q / 4 * step_probability(YOU, u, box)
+                mean += p * q / 4 * step_probability(U_SET, u, box)
         assert flow.kernel[k, into].sum() == pytest.approx(mean, rel=0.02)
 
 

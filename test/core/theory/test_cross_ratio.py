@@ -1,7 +1,7 @@
 """Laws of the cross-ratio distance."""
 
 import math
-from test.core.theory.sets import BALL, CUBE, DISC, ELL, PLUS, scattered, SQUARE
+from test.core.theory.sets import BALL, CUBE, DISC, L_SET, PLUS, scattered, SQUARE
 from test.laws.maps import U_SHAPE
 
 from hnr_planner.core import BoxSpace, GridSpace, PolytopeSpace
@@ -9,7 +9,7 @@ from hnr_planner.core.theory import cross_ratio_distance, hilbert_distance
 import numpy as np
 import pytest
 
-SETS = pytest.mark.parametrize('space', [DISC, SQUARE, ELL, PLUS, BALL, CUBE])
+SETS = pytest.mark.parametrize('space', [DISC, SQUARE, L_SET, PLUS, BALL, CUBE])
 CONVEX = pytest.mark.parametrize('space', [DISC, SQUARE, BALL, CUBE])
 
 
@@ -20,7 +20,7 @@ def test_a_disc_by_hand():
 
 def test_an_ell_by_hand():
     """Along the bottom of the L: chord 2, points 1 apart, .25 and .75 from its ends."""
-    assert cross_ratio_distance(ELL, (0.25, 0.5), (1.25, 0.5)) == pytest.approx(2 / 0.1875)
+    assert cross_ratio_distance(L_SET, (0.25, 0.5), (1.25, 0.5)) == pytest.approx(2 / 0.1875)
 
 
 @SETS
@@ -109,6 +109,6 @@ def test_affine_maps_keep_it(dim):
 
 
 def test_points_that_do_not_see_each_other_have_none():
-    assert cross_ratio_distance(ELL, (0.5, 1.9), (1.9, 0.5)) == math.inf
-    assert cross_ratio_distance(ELL, (0.5, 0.5), (1.5, 1.5)) == math.inf
-    assert cross_ratio_distance(ELL, (1.5, 1.5), (0.5, 0.5)) == math.inf
+    assert cross_ratio_distance(L_SET, (0.5, 1.9), (1.9, 0.5)) == math.inf
+    assert cross_ratio_distance(L_SET, (0.5, 0.5), (1.5, 1.5)) == math.inf
+    assert cross_ratio_distance(L_SET, (1.5, 1.5), (0.5, 0.5)) == math.inf

@@ -6,7 +6,7 @@ would exceed once in 1e9 runs.
 """
 
 import math
-from test.core.theory.sets import BALL, CUBE, DISC, ELL, SQUARE, walked
+from test.core.theory.sets import BALL, CUBE, DISC, L_SET, SQUARE, walked
 
 from hnr_planner.core import BoxSpace
 from hnr_planner.core.theory import step_probability, transition_density
@@ -22,7 +22,7 @@ PLACES = pytest.mark.parametrize(
     [
         (DISC, (0.3, -0.2)),
         (SQUARE, (0.9, 0.05)),
-        (ELL, (1.6, 0.7)),
+        (L_SET, (1.6, 0.7)),
         (BALL, (0.1, 0.5, -0.6)),
         (CUBE, (0.2, 0.5, 0.9)),
     ],
@@ -74,7 +74,7 @@ def through_walls(space, u, v):
         (half_of_it, SQUARE, (0.9, 0.05)),
         (power_of_the_dimension, CUBE, (0.2, 0.5, 0.9)),
         (ray_instead_of_chord, DISC, (0.3, -0.2)),
-        (through_walls, ELL, (1.6, 0.7)),
+        (through_walls, L_SET, (1.6, 0.7)),
     ],
     ids=lambda value: getattr(value, '__name__', ''),
 )
@@ -101,7 +101,7 @@ def test_it_is_infinite_at_the_point_itself():
 @pytest.mark.parametrize(
     ('space', 'u', 'part'),
     [
-        (ELL, (1.6, 0.7), BoxSpace((0, 0), (0.5, 1))),
+        (L_SET, (1.6, 0.7), BoxSpace((0, 0), (0.5, 1))),
         (SQUARE, (0.9, 0.05), BoxSpace((0, 0.4), (0.7, 1))),
         (CUBE, (0.2, 0.5, 0.9), BoxSpace((0, 0, 0), (0.7, 0.3, 0.4))),
     ],

@@ -1,4 +1,4 @@
-"""Nobody who plans or samples waits for the theory's libraries."""
+"""Planning and sampling do not import the libraries of the theory."""
 
 from pathlib import Path
 

@@ -1,7 +1,7 @@
 """Bounds on the link diameter, against numbers counted by hand."""
 
 import math
-from test.core.theory.sets import ELL, PLUS, YOU
+from test.core.theory.sets import L_SET, PLUS, U_SET
 from test.laws.maps import CHECKERBOARD, CORRIDOR, drawn, ONE_CELL, SPIRAL, TWO_ROOMS
 
 from hnr_planner.core import GridSpace, PolygonSpace, RequestError
@@ -23,23 +23,23 @@ HALL = GridSpace.from_blocked(TWO_ROOMS)
     [
         (GridSpace.from_blocked(ONE_CELL), 1),
         (GridSpace.from_blocked(CORRIDOR), 1),
-        (ELL, 2),
+        (L_SET, 2),
         (PLUS, 2),
-        (YOU, 3),
+        (U_SET, 3),
         (GridSpace.from_blocked(SPIRAL), 7),
     ],
-    ids=['cell', 'corridor', 'ell', 'plus', 'you', 'spiral'],
+    ids=['cell', 'corridor', 'L', 'plus', 'U', 'spiral'],
 )
-def test_it_is_what_one_counts(space, links):
+def test_bounds_are_equal_to_the_number_counted_by_hand(space, links):
     assert link_diameter(space, 2) == (links, links)
 
 
-def test_parts_that_are_not_connected_do_not_count():
+def test_pairs_of_different_components_do_not_count():
     assert link_diameter(GridSpace.from_blocked(CHECKERBOARD)) == (1, 1)
 
 
 def test_bounds_enclose_and_come_together():
-    bounds = [link_diameter(HALL, parts) for parts in (1, 2, 3)]
+    bounds = [link_diameter(HALL, subdivision) for subdivision in (1, 2, 3)]
     lower, upper = np.transpose(bounds)
     assert (lower <= upper.min()).all()
     assert (np.diff(lower) >= 0).all()
@@ -47,12 +47,12 @@ def test_bounds_enclose_and_come_together():
 
 
 def test_chains_over_random_points_are_no_shorter():
-    """What 300 points need among themselves, at the worst, lies between the bounds too."""
+    """The largest number of links among 300 points lies between the bounds too."""
     rng = np.random.default_rng(1)
     points = rng.uniform(*HALL.bounds, size=(600, 2))
     points = points[[HALL.connected(point, (0.5, 3.5)) for point in points]][:300]
-    sees = np.array([[HALL.is_motion_valid(a, b) for a in points] for b in points])
-    links = dijkstra(sees, unweighted=True)
+    visible = np.array([[HALL.is_motion_valid(a, b) for a in points] for b in points])
+    links = dijkstra(visible, unweighted=True)
     assert (
         link_diameter(HALL).lower <= links[np.isfinite(links)].max() <= link_diameter(HALL).upper
     )

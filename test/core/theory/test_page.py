@@ -1,17 +1,17 @@
-"""The page docs/theory.md prints what the functions give: every figure of its tables."""
+"""Every figure in the tables of docs/theory.md is the value of its function."""
 
 import math
 from pathlib import Path
 from test.core.theory import errors
 from test.core.theory.paths import (
-    AROUND_THE_YOU,
+    AROUND_THE_U,
     N_LINES,
     N_WALKS,
-    said_of,
+    theory_of,
     THROUGH_THE_DOOR,
     walks_of,
 )
-from test.core.theory.sets import DISC, ELL, SQUARE, two_rooms, YOU
+from test.core.theory.sets import DISC, L_SET, SQUARE, two_rooms, U_SET
 from test.laws.maps import SPIRAL, TWO_ROOMS
 
 from hnr_planner.core import BallSpace, BoxSpace, GridSpace, ShearedSpace
@@ -49,14 +49,14 @@ def rows():
 def quantities():
     parts = (BoxSpace((0, 0), (1, 1)), BoxSpace((1, 0), (2, 1)), BoxSpace((0, 1), (1, 2)))
     yield 'density', [f'{transition_density(DISC, (0, 0), (0.5, 0))[0]:.4f}']
-    yield 'step', [f'{step_probability(ELL, (0.5, 0.4), part):.4f}' for part in parts]
-    yield 'view', [f'{polygon_area(view(ELL, u)):.4f}' for u in ((1.5, 0.5), (1.75, 0.75))]
-    yield 'view', [f'{polygon_area(view(YOU, (1, 8))):.4f}']
+    yield 'step', [f'{step_probability(L_SET, (0.5, 0.4), part):.4f}' for part in parts]
+    yield 'view', [f'{polygon_area(view(L_SET, u)):.4f}' for u in ((1.5, 0.5), (1.75, 0.75))]
+    yield 'view', [f'{polygon_area(view(U_SET, (1, 8))):.4f}']
     yield 'short step', [f'{step_length(DISC, u):.4f}' for u in ((0, 0), (0.9, 0))]
     yield 'short step', [f'{step_length(SQUARE, (0.9, 0.05)):.4f}']
     ends = (0.25, 0.5), (1.25, 0.5)
-    yield 'cross-ratio distance', [f'{cross_ratio_distance(ELL, *ends)[0]:.3f}', ' 8 ']
-    around = chain_distance(YOU, (1, 8), (6, 8), 3)
+    yield 'cross-ratio distance', [f'{cross_ratio_distance(L_SET, *ends)[0]:.3f}', ' 8 ']
+    around = chain_distance(U_SET, (1, 8), (6, 8), 3)
     yield 'chain distance', [f'{around.lower:.1f} to {around.upper:.1f}', '2 log 3']
     spiral, hall = (link_diameter(GridSpace.from_blocked(grid)) for grid in (SPIRAL, TWO_ROOMS))
     yield 'links', [f'{spiral.lower}', f'{hall.lower} to {hall.upper:.0f}']
@@ -68,9 +68,9 @@ def quantities():
 def conductances():
     for name, space, shape in (
         ('disc', DISC, (12, 12)),
-        ('ell', ELL, (12, 12)),
+        ('ell', L_SET, (12, 12)),
         ('banana', BANANA, (12, 12)),
-        ('U', YOU, (18, 14)),
+        ('U', U_SET, (18, 14)),
         ('two rooms, door .2', two_rooms(0.2), (10, 20)),
         ('two rooms, door .05', two_rooms(0.05), (10, 20)),
     ):
@@ -98,18 +98,18 @@ def bounds():
 
 def paths():
     for name, problem in (
-        ('U, arm to arm', AROUND_THE_YOU),
+        ('U, arm to arm', AROUND_THE_U),
         ('two rooms, corner to corner', THROUGH_THE_DOOR),
     ):
-        said, walks = said_of(problem), walks_of(problem)
+        theory, walks = theory_of(problem), walks_of(problem)
         error = walks.std() / math.sqrt(N_WALKS)
         yield (
             name,
             [
-                f'{said.fraction:.4f}',
-                f'{said.mixing}',
-                f'{said.by_mixing:.0f}',
-                f'{said.expected:.1f}',
+                f'{theory.fraction:.4f}',
+                f'{theory.mixing}',
+                f'{theory.by_mixing:.0f}',
+                f'{theory.expected:.1f}',
                 f'{walks.mean():.1f} +- {error:.1f}',
             ],
         )

@@ -1,11 +1,11 @@
-"""How long paths of Hit-and-Run are: the linear system against walks, and what mixing says."""
+"""Transitions into a goal: the linear system against walks, and the estimate from mixing."""
 
 import math
 from test.core.theory.paths import (
-    AROUND_THE_YOU,
+    AROUND_THE_U,
     N_LINES,
     N_WALKS,
-    said_of,
+    theory_of,
     THROUGH_THE_DOOR,
     walks_of,
 )
@@ -20,26 +20,26 @@ import numpy as np
 import pytest
 
 PROBLEMS = pytest.mark.parametrize(
-    'problem', [AROUND_THE_YOU, THROUGH_THE_DOOR], ids=['you', 'rooms']
+    'problem', [AROUND_THE_U, THROUGH_THE_DOOR], ids=['U', 'rooms']
 )
 
 
 @PROBLEMS
 def test_the_expected_number_is_the_mean_of_walks(problem):
     """4000 walks, 6.5 standard errors (1e-10 false alarms), besides 3 % that cells forget."""
-    said, walks = said_of(problem), walks_of(problem)
+    theory, walks = theory_of(problem), walks_of(problem)
     error = walks.std() / math.sqrt(N_WALKS)
-    assert abs(walks.mean() - said.expected) < 6.5 * error + 0.03 * said.expected
-    assert error < 0.02 * said.expected
+    assert abs(walks.mean() - theory.expected) < 6.5 * error + 0.03 * theory.expected
+    assert error < 0.02 * theory.expected
 
 
 @PROBLEMS
 def test_what_mixing_says_is_enough(problem):
     """On these sets t_mix / sigma(G) is 3 and 4 times too many; the bound from t_rel holds."""
-    said = said_of(problem)
-    assert 2 < said.by_mixing / said.expected < 5
-    assert said.from_anywhere < said.bound
-    assert said.expected < said.bound * said.warmth
+    theory = theory_of(problem)
+    assert 2 < theory.by_mixing / theory.expected < 5
+    assert theory.from_anywhere < theory.bound
+    assert theory.expected < theory.bound * theory.warmth
 
 
 def test_a_walk_that_mixes_at_once():

@@ -1,7 +1,7 @@
-"""Laws of a single step: additive, of the right length, and seen from two points."""
+"""Functionals of one step: additivity, lengths, overlap and visibility."""
 
 import math
-from test.core.theory.sets import BALL, CUBE, DISC, ELL, SQUARE, walked, YOU
+from test.core.theory.sets import BALL, CUBE, DISC, L_SET, SQUARE, U_SET, walked
 
 from hnr_planner.core import BallSpace, BoxSpace, RequestError
 from hnr_planner.core.theory import (
@@ -20,7 +20,7 @@ STANDARD_ERRORS = 6.5
 
 
 def boxes(space, shape):
-    """Cut the bounds of a space into boxes."""
+    """Divide the bounds of a space into boxes."""
     lower, upper = space.bounds
     side = (upper - lower) / shape
     for cell in np.ndindex(*shape):
@@ -32,8 +32,8 @@ def boxes(space, shape):
     [
         (DISC, (0.3, -0.8), (3, 4), 2e-6),
         (SQUARE, (0.9, 0.05), (5, 2), 1e-9),
-        (ELL, (1.6, 0.7), (2, 3), 1e-9),
-        (YOU, (0.7, 8.3), (7, 9), 1e-9),
+        (L_SET, (1.6, 0.7), (2, 3), 1e-9),
+        (U_SET, (0.7, 8.3), (7, 9), 1e-9),
         (CUBE, (0.2, 0.5, 0.9), (2, 2, 2), 1e-9),
     ],
     ids=['disc', 'square', 'ell', 'you', 'cube'],
@@ -48,9 +48,9 @@ def test_probabilities_add_up(space, u, shape, rounding):
 def test_it_is_as_likely_as_the_walk_says():
     """N steps into each of nine cells of the U, at 6.5 standard errors: 1e-9 false alarms."""
     u = (3.2, 1.1)
-    ends = walked(YOU, np.tile(u, (N, 1)), seed=1)
-    for box in boxes(YOU, (3, 3)):
-        p = step_probability(YOU, u, box)
+    ends = walked(U_SET, np.tile(u, (N, 1)), seed=1)
+    for box in boxes(U_SET, (3, 3)):
+        p = step_probability(U_SET, u, box)
         assert abs(box.contains(ends).mean() - p) <= STANDARD_ERRORS * math.sqrt(p / N)
 
 
@@ -63,9 +63,9 @@ def test_a_mean_of_one_is_one_and_of_a_half_plane_its_probability():
     def right_half(points):
         return points[:, 0] > 0.5
 
-    assert step_mean(ELL, (1.6, 0.7), lambda points: np.ones(len(points))) == pytest.approx(1)
-    p = step_probability(ELL, (1.6, 0.7), BoxSpace((0.5, 0), (2, 2)))
-    assert step_mean(ELL, (1.6, 0.7), right_half) == pytest.approx(p, abs=2e-3)
+    assert step_mean(L_SET, (1.6, 0.7), lambda points: np.ones(len(points))) == pytest.approx(1)
+    p = step_probability(L_SET, (1.6, 0.7), BoxSpace((0.5, 0), (2, 2)))
+    assert step_mean(L_SET, (1.6, 0.7), right_half) == pytest.approx(p, abs=2e-3)
 
 
 @pytest.mark.parametrize('space', [DISC, BALL])
@@ -76,7 +76,7 @@ def test_the_short_steps_from_the_middle_of_a_ball(space):
 
 
 @pytest.mark.parametrize(
-    ('space', 'u'), [(SQUARE, (0.9, 0.05)), (ELL, (1.6, 0.7)), (CUBE, (0.2, 0.5, 0.9))]
+    ('space', 'u'), [(SQUARE, (0.9, 0.05)), (L_SET, (1.6, 0.7)), (CUBE, (0.2, 0.5, 0.9))]
 )
 def test_an_eighth_of_the_steps_is_shorter(space, u):
     """N steps: 6.5 standard errors of a fraction of 1/8; the ball of that radius says the same."""
@@ -87,7 +87,7 @@ def test_an_eighth_of_the_steps_is_shorter(space, u):
     assert step_probability(space, u, BallSpace(u, length)) == pytest.approx(1 / 8, rel=1e-3)
 
 
-@pytest.mark.parametrize(('space', 'v'), [(SQUARE, (0.6, 0.4)), (ELL, (0.4, 1.7))])
+@pytest.mark.parametrize(('space', 'v'), [(SQUARE, (0.6, 0.4)), (L_SET, (0.4, 1.7))])
 def test_two_steps_have_in_common_what_draws_say(space, v):
     """The mean of min(1, f_v / f_u) over N steps from u, and the same from either side."""
     u = (0.9, 0.05)
@@ -102,9 +102,9 @@ def test_two_steps_have_in_common_what_draws_say(space, v):
 def test_what_another_point_misses():
     """N steps, as above; in a convex set nothing is missed."""
     u, v = (0.5, 0.4), (1.5, 0.5)
-    ends = walked(ELL, np.tile(u, (N, 1)), seed=4)
-    missed = np.mean([not ELL.is_motion_valid(v, end) for end in ends[:4000]])
-    p = unseen_probability(ELL, u, v)
+    ends = walked(L_SET, np.tile(u, (N, 1)), seed=4)
+    missed = np.mean([not L_SET.is_motion_valid(v, end) for end in ends[:4000]])
+    p = unseen_probability(L_SET, u, v)
     assert abs(missed - p) < STANDARD_ERRORS * math.sqrt(p / 4000)
     assert unseen_probability(SQUARE, (0.3, 0.4), (0.7, 0.1)) == 0
 

@@ -1,7 +1,7 @@
-"""The view of a point: areas by hand, and every point of it against the space's own word."""
+"""The view of a point: areas by hand, and its points against ``is_motion_valid``."""
 
 import math
-from test.core.theory.sets import DISC, ELL, SQUARE, YOU
+from test.core.theory.sets import DISC, L_SET, SQUARE, U_SET
 from test.laws.maps import TWO_ROOMS
 
 from hnr_planner.core import BoxSpace, DifferenceSpace, GridSpace, PolygonSpace, RequestError
@@ -27,21 +27,21 @@ HALL = GridSpace.from_blocked(TWO_ROOMS, 0.2, (3.0, 2.0, 0.4))
     ],
 )
 def test_an_ell_by_hand(u, area):
-    assert polygon_area(view(ELL, u)) == pytest.approx(area, rel=1e-12)
-    turned = GridSpace.from_blocked(ELL.blocked, 0.5, (4.0, -1.0, 0.7))
-    there = turned.from_kernel(ELL.to_kernel(np.array(u)))
+    assert polygon_area(view(L_SET, u)) == pytest.approx(area, rel=1e-12)
+    turned = GridSpace.from_blocked(L_SET.blocked, 0.5, (4.0, -1.0, 0.7))
+    there = turned.from_kernel(L_SET.to_kernel(np.array(u)))
     assert polygon_area(view(turned, there)) == pytest.approx(area / 4, rel=1e-12)
 
 
 def test_a_you_by_hand():
     """From the middle of one arm (1, 8), arms 2 wide and 6 long above a hall of 7 by 3."""
     # Left of the line through the corner (2, 3), which goes from (1, 8) to the floor at x = 2.6.
-    assert polygon_area(view(YOU, (1, 8))) == pytest.approx(12 + 3 * (2 + 2.6) / 2, rel=1e-12)
+    assert polygon_area(view(U_SET, (1, 8))) == pytest.approx(12 + 3 * (2 + 2.6) / 2, rel=1e-12)
 
 
 @pytest.mark.parametrize(
     ('space', 'u'),
-    [(YOU, (3.2, 1.1)), (HALL, HALL.from_kernel(np.array([5.6, 4.3]))), (SQUARE, (0.9, 0.05))],
+    [(U_SET, (3.2, 1.1)), (HALL, HALL.from_kernel(np.array([5.6, 4.3]))), (SQUARE, (0.9, 0.05))],
     ids=['you', 'hall', 'square'],
 )
 def test_it_holds_the_points_that_are_seen_and_no_others(space, u):
@@ -73,6 +73,6 @@ def test_a_smooth_boundary_is_met_by_a_polygon():
 
 def test_what_sees_nothing_is_refused():
     with pytest.raises(RequestError, match='is occupied'):
-        view(ELL, (1.5, 1.5))
+        view(L_SET, (1.5, 1.5))
     with pytest.raises(RequestError, match='3 axes'):
         view(BoxSpace((0, 0, 0), (1, 1, 1)), (0.5, 0.5, 0.5))

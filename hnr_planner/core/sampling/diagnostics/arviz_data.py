@@ -1,4 +1,4 @@
-"""Draws as arviz takes them, for its plots and its further diagnostics."""
+"""Conversion of draws for arviz, for its plots and further diagnostics."""
 
 from typing import Any
 
@@ -10,13 +10,13 @@ def to_arviz(draws: ArrayLike) -> Any:
     """
     Return draws (n_chains, n_draws, dim) as a dataset with one variable ``x``.
 
-    It is an ``xarray.Dataset`` with the dimensions ``chain`` and ``draw``, which every function
-    of arviz takes, whichever its version: ``arviz.summary(to_arviz(draws))``.
+    It is an ``xarray.Dataset`` with the dimensions ``chain`` and ``draw``, which the functions of
+    all versions of arviz accept: ``arviz.summary(to_arviz(draws))``.
 
     Raises
     ------
     ModuleNotFoundError
-        When arviz is not installed; the package does not bring it along.
+        When arviz is not installed; it is not a dependency of the package.
 
     """
     import arviz

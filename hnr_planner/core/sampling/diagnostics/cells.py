@@ -1,7 +1,7 @@
 """
-How far from a known law, and how slow: what shows once a set is cut into cells.
+Total variation distance and relaxation time, from draws sorted into cells of a set.
 
-Cells are given by their numbers 0, 1, ..., one for each draw; how a set is cut is the caller's.
+Each draw is given by the index 0, 1, ... of its cell; the caller chooses the partition.
 """
 
 import math
@@ -12,24 +12,26 @@ from hnr_planner.core.errors import RequestError
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-#: A gap of the spectrum below this is rounding.
+#: A spectral gap below this is rounding.
 NO_GAP = 1e-12
 
 
 class TotalVariation(NamedTuple):
     """
-    Distance of the law of draws from a known law, seen through cells: 0 for equal, at most 1.
+    Estimates of the total variation distance between the law of draws and a known law.
+
+    The distance is between the probabilities of the cells: 0 for equal laws, at most 1.
 
     Attributes
     ----------
     plug_in : float
-        Distance of the observed shares: too large, because chance alone makes a distance.
+        Distance of the observed shares, which is biased upwards.
     floor : float
-        The mean of ``plug_in`` for draws of the known law itself, whose standard deviation is
-        about .30 / sqrt(n). For equal cells it is sqrt((n_cells - 1) / (2 pi n)).
+        Mean of ``plug_in`` for draws of the known law itself; its standard deviation is about
+        .30 / sqrt(n). For equal cells it is sqrt((n_cells - 1) / (2 pi n)).
     lower_bound : float
-        One half of the draws chooses the cells that have too many, the other says by how much.
-        Its mean is at most the distance; it may be below 0.
+        Cross-fitted estimate, which is biased downwards: one half of the draws selects the
+        overfull cells, the other half measures their excess. It may be below 0.
 
     """
 
@@ -40,19 +42,19 @@ class TotalVariation(NamedTuple):
 
 def total_variation(cells: ArrayLike, shares: ArrayLike) -> TotalVariation:
     """
-    Measure how far from a known law independent draws are, for instance the ends of many chains.
+    Estimate the distance of independent draws, such as the ends of many chains, from a known law.
 
     Parameters
     ----------
     cells : (n,) int
-        The cell of every draw; two or more.
+        Cell of every draw, n at least 2.
     shares : (n_cells,)
-        The probability of every cell: its part of the set's volume, for the uniform law.
+        Probability of every cell; for the uniform law, its fraction of the set's volume.
 
     Raises
     ------
     RequestError
-        When the shares are not probabilities, or a cell is none of theirs.
+        When the shares are not probabilities, or a cell has no share.
 
     """
     law = _check_shares(shares)
@@ -75,25 +77,26 @@ def relaxation_time(cells: ArrayLike, lag: int = 1) -> float:
     """
     Estimate the relaxation time [draws] of a reversible walk from its moves between cells.
 
-    It is 1 / (1 - lambda), lambda the second largest eigenvalue of the walk: what decays slowest
-    decays by 1 - 1 / time at each draw. The eigenvalue is taken from the moves counted over
-    ``lag`` draws, forth and back together. Moves between cells and not an autocorrelation,
-    because the error has a known sign: functions that are constant on cells are some of all, so
-    but for noise the answer is never above the true time, and it comes nearer with finer cells
-    and with a longer lag, whose eigenvalue is taken to its power 1 / lag. An autocorrelation is
-    that of one function, which may miss what is slow, and at long lags it is all noise.
+    The relaxation time is 1 / (1 - lambda), where lambda is the second largest eigenvalue of the
+    walk: the slowest mode decays by the factor lambda at each draw. lambda is computed from the
+    counts of moves over ``lag`` draws, in both directions, and taken to the power 1 / lag.
+
+    The error has a known sign: the functions that are constant on cells are a subspace, so that
+    apart from noise the estimate is never above the true time. It comes nearer with finer cells
+    and a longer lag. The autocorrelation of one function may miss the slowest mode, and is
+    dominated by noise at long lags.
 
     Parameters
     ----------
     cells : (n_chains, n_draws) int
-        The cell of every draw, in the order in which the chains made them.
+        Cell of every draw, in the order of the chains.
     lag : int
-        Draws between the two ends of a move; well below the answer.
+        Draws between the two ends of a move; well below the relaxation time.
 
     Returns
     -------
     float
-        At least 1; inf where some cells were never left for the others.
+        At least 1; inf where no chain moved between two groups of cells.
 
     Raises
     ------
@@ -105,13 +108,13 @@ def relaxation_time(cells: ArrayLike, lag: int = 1) -> float:
     if numbers.shape[1] <= lag or not len(numbers):
         raise RequestError(f'cells must have chains longer than lag {lag}, got {numbers.shape}')
     visited = np.unique(numbers)
-    n, place = len(visited), np.searchsorted(visited, numbers)
-    pairs = place[:, :-lag] * n + place[:, lag:]
+    n, index = len(visited), np.searchsorted(visited, numbers)
+    pairs = index[:, :-lag] * n + index[:, lag:]
     moves = np.bincount(pairs.ravel(), minlength=n * n).reshape(n, n)
     both = moves + moves.T
     root = np.sqrt(both.sum(axis=1))
-    seen = root > 0.0
-    both, root = both[np.ix_(seen, seen)], root[seen]
+    used = root > 0.0
+    both, root = both[np.ix_(used, used)], root[used]
     if len(root) < 2:
         return math.inf
     second = np.linalg.eigvalsh(both / np.outer(root, root))[-2]
@@ -120,6 +123,7 @@ def relaxation_time(cells: ArrayLike, lag: int = 1) -> float:
 
 
 def _check_cells(cells: ArrayLike, ndim: int) -> NDArray[np.int64]:
+    """Return cells as integers of at least 0 in ``ndim`` dimensions, or raise RequestError."""
     numbers = np.asarray(cells)
     if numbers.ndim != ndim or not np.issubdtype(numbers.dtype, np.integer):
         raise RequestError(
@@ -132,6 +136,7 @@ def _check_cells(cells: ArrayLike, ndim: int) -> NDArray[np.int64]:
 
 
 def _check_shares(shares: ArrayLike) -> Floats:
+    """Return shares (n_cells,) that are probabilities, or raise RequestError."""
     law = np.asarray(shares, dtype=np.float64)
     if law.ndim != 1 or not (law >= 0.0).all() or not abs(law.sum() - 1.0) < 1e-9:
         raise RequestError(

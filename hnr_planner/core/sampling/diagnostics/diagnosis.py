@@ -1,10 +1,12 @@
-"""A verdict on draws, in numbers and in words."""
+"""Convergence verdict on draws, with the statistics that it rests on."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+import math
 
 from hnr_planner.core.checks import Floats
 from hnr_planner.core.errors import RequestError
+from hnr_planner.core.sampling.diagnostics.confinement import count_missed_cells
 from hnr_planner.core.sampling.diagnostics.effective import (
     ess_bulk,
     ess_mean,
@@ -12,46 +14,50 @@ from hnr_planner.core.sampling.diagnostics.effective import (
     r_hat,
     time_within,
 )
-from hnr_planner.core.sampling.diagnostics.parts import parts_missed
-from hnr_planner.core.sampling.diagnostics.stays import frozen, longest_stay, repeats
+from hnr_planner.core.sampling.diagnostics.holding import frozen, longest_holding_time, repeats
+from hnr_planner.core.sampling.diagnostics.separation import compare_pairs, Separation
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+#: Least number of draws of each chain, and of chains for a verdict of convergence.
 DRAWS_MIN = 4
 CHAINS_MIN = 2
-#: Vehtari et al. (2021), section 4.
+#: Thresholds of Vehtari et al. (2021), Section 4.
 R_HAT_MAX = 1.01
 ESS_MIN = 400
-#: A chain that spends this part of its draws on one point, and so many at least, is stuck.
-STAY_MAX = 0.05
-STAY_MIN = 10
+#: A chain is stuck that holds one point for more than this fraction of its draws, and at least for
+#: more than this number of draws.
+HOLDING_MAX = 0.05
+HOLDING_MIN = 10
 
 
 @dataclass(frozen=True)
 class Diagnosis:
     """
-    What draws show about the chains that made them.
+    Convergence statistics of draws, and the reasons against convergence.
 
     Attributes
     ----------
     r_hat : (dim,)
-        How much the chains disagree on each coordinate; 1 when they agree, inf when none moves.
+        R-hat of each coordinate: 1 where the chains agree, inf where none moves.
     ess_bulk, ess_tail : (dim,)
         Effective sample sizes of all draws together, for the middle and for the tails.
     mcse_mean : (dim,)
         Standard error of the mean, in the units of the draws.
     autocorrelation_time : (dim,)
-        Draws made for each that counts, for the mean.
+        Number of draws for each effective one, for the mean.
     repeats : (n_chains,) int
-        Draws equal to the one before them: zero chords, and moves that were rejected.
-    longest_stay : (n_chains,) int
-        The most draws in a row on one point.
-    parts_missed : (n_chains,) int
-        Parts of the set, each with as many of all draws, that a chain never entered although it
-        made draws enough.
+        Number of draws equal to the one before: zero chords and rejected moves.
+    longest_holding_time : (n_chains,) int
+        Largest number of consecutive draws on one point.
+    cells_missed : (n_chains,) int
+        Number of cells, of up to 16 with equal numbers of all draws, that a chain never entered
+        although it made enough draws.
+    separated : (n_chains, n_chains) bool
+        Whether the draws of two chains can be told apart by their positions, so that the chains
+        keep to different regions, however finely interleaved.
     reasons : tuple of str
-        Why the draws must not be taken for draws of the uniform law; empty when nothing speaks
-        against it.
+        Reasons why the chains have not converged; empty where none was found.
 
     """
 
@@ -61,13 +67,14 @@ class Diagnosis:
     mcse_mean: Floats
     autocorrelation_time: Floats
     repeats: NDArray[np.int64]
-    longest_stay: NDArray[np.int64]
-    parts_missed: NDArray[np.int64]
+    longest_holding_time: NDArray[np.int64]
+    cells_missed: NDArray[np.int64]
+    separated: NDArray[np.bool_]
     reasons: tuple[str, ...]
 
     @property
     def converged(self) -> bool:
-        """Whether nothing speaks against the draws."""
+        """Whether no reason against convergence was found."""
         return not self.reasons
 
     @property
@@ -83,16 +90,17 @@ class Diagnosis:
 
 def diagnose(draws: ArrayLike) -> Diagnosis:
     """
-    Say how much draws are worth, and whether the chains that made them have converged.
+    Compute convergence statistics of draws, and judge whether their chains have converged.
 
-    A chain that is stuck is never called converged, whatever its R-hat: chains that do not move
-    agree perfectly. But nothing here sees a part of the set that no chain has entered. Chains
-    that all start at one point show how fast they leave it, and no more than that.
+    A stuck chain is never called converged, whatever its R-hat (chains that do not move agree
+    perfectly), nor are chains that keep to different regions. No diagnostic detects a region that
+    no chain has entered: chains that all start at one point show how fast they leave it, and no
+    more. ``separation`` states what pairs of chains cannot show.
 
     Parameters
     ----------
     draws : (n_chains, n_draws, dim)
-        As ``sample`` returns them; 4 draws or more of each chain.
+        Draws as ``sample`` returns them, 4 or more of each chain.
 
     Raises
     ------
@@ -104,19 +112,27 @@ def diagnose(draws: ArrayLike) -> Diagnosis:
     coordinates = np.ascontiguousarray(np.moveaxis(draws, 2, 0))
     sizes = np.array([ess_mean(chains) for chains in coordinates])
     spread = draws.std(axis=(0, 1), ddof=1)
-    missed, n_parts = parts_missed(draws, max(map(time_within, coordinates)))
-    numbers = Diagnosis(
+    time = max(map(time_within, coordinates))
+    missed, n_cells = count_missed_cells(draws, time)
+    pairs = compare_pairs(draws, time)
+    statistics = Diagnosis(
         r_hat=np.array([r_hat(chains) for chains in coordinates]),
         ess_bulk=np.array([ess_bulk(chains) for chains in coordinates]),
         ess_tail=np.array([ess_tail(chains) for chains in coordinates]),
         mcse_mean=np.where(spread > 0.0, spread / np.sqrt(sizes), np.inf),
         autocorrelation_time=coordinates[0].size / sizes,
         repeats=repeats(draws),
-        longest_stay=longest_stay(draws),
-        parts_missed=missed,
+        longest_holding_time=longest_holding_time(draws),
+        cells_missed=missed,
+        separated=pairs.separated,
         reasons=(),
     )
-    return replace(numbers, reasons=(*_stuck(draws, numbers, n_parts), *_apart(draws, numbers)))
+    reasons = (
+        *_signs_of_sticking(draws, statistics, n_cells),
+        *_signs_of_separation(pairs),
+        *_signs_of_disagreement(statistics),
+    )
+    return replace(statistics, reasons=reasons)
 
 
 def check_draws(draws: ArrayLike) -> Floats:
@@ -130,9 +146,9 @@ def check_draws(draws: ArrayLike) -> Floats:
             f'draws must have shape (n_chains, n_draws, dim) with n_draws at least {DRAWS_MIN}, '
             f'got {array.shape}'
         )
-    strange = np.argwhere(~np.isfinite(array))
-    if len(strange):
-        chain, draw, _ = strange[0]
+    not_finite = np.argwhere(~np.isfinite(array))
+    if len(not_finite):
+        chain, draw, _ = not_finite[0]
         raise RequestError(
             f'draws must be finite, got {array[chain, draw].tolist()} '
             f'as draw {draw} of chain {chain}'
@@ -140,32 +156,45 @@ def check_draws(draws: ArrayLike) -> Floats:
     return array
 
 
-def _stuck(draws: Floats, seen: Diagnosis, n_parts: int) -> Iterator[str]:
-    """Yield what shows that a chain did not get about."""
+def _signs_of_sticking(draws: Floats, statistics: Diagnosis, n_cells: int) -> Iterator[str]:
+    """Yield the reasons that concern single chains: frozen, stuck or confined."""
     still = frozen(draws)
     for chain in np.flatnonzero(still.all(axis=1)):
         yield f'chain {chain} never moved'
     for chain, coordinate in np.argwhere(still & ~still.all(axis=1, keepdims=True)):
         yield f'chain {chain} never moved in coordinate {coordinate}'
     n_draws = draws.shape[1]
-    long = (seen.longest_stay > max(STAY_MAX * n_draws, STAY_MIN)) & ~still.all(axis=1)
-    for chain in np.flatnonzero(long):
-        yield f'chain {chain} stayed on one point for {seen.longest_stay[chain]} draws'
-    for chain in np.flatnonzero((seen.parts_missed > 0) & ~still.all(axis=1)):
-        yield (
-            f'chain {chain} never entered {seen.parts_missed[chain]} of {n_parts} parts with as '
-            f'many draws each'
-        )
+    moving = ~still.all(axis=1)
+    held = statistics.longest_holding_time
+    for chain in np.flatnonzero((held > max(HOLDING_MAX * n_draws, HOLDING_MIN)) & moving):
+        yield f'chain {chain} stayed on one point for {held[chain]} draws'
+    missed = statistics.cells_missed
+    for chain in np.flatnonzero((missed > 0) & moving):
+        yield f'chain {chain} never entered {missed[chain]} of {n_cells} cells of equal weight'
 
 
-def _apart(draws: Floats, seen: Diagnosis) -> Iterator[str]:
-    """Yield what shows that the chains do not agree, or are too short to tell."""
-    if len(draws) < CHAINS_MIN:
+def _signs_of_separation(pairs: Separation) -> Iterator[str]:
+    """Yield the reason that concerns pairs of chains, with the pair that differs most."""
+    n_separated = int(np.triu(pairs.separated).sum())
+    if n_separated == 0:
+        return
+    accuracy = np.where(pairs.separated, pairs.accuracy, 0.0)
+    first, second = np.unravel_index(accuracy.argmax(), accuracy.shape)
+    yield (
+        f'chains {first} and {second} keep to different regions: {accuracy.max():.0%} of their '
+        f'draws lie nearer to draws of their own chain ({n_separated} of '
+        f'{math.comb(len(accuracy), 2)} pairs of chains differ)'
+    )
+
+
+def _signs_of_disagreement(statistics: Diagnosis) -> Iterator[str]:
+    """Yield the reasons that concern all chains: they disagree, or are too few or too short."""
+    if len(statistics.repeats) < CHAINS_MIN:
         yield 'one chain cannot show whether another would agree'
-    worst = int(seen.r_hat.argmax())
-    if seen.r_hat[worst] > R_HAT_MAX:
-        yield f'R-hat of coordinate {worst} is {seen.r_hat[worst]:.3f}, above {R_HAT_MAX}'
-    for where, sizes in (('the middle', seen.ess_bulk), ('the tails', seen.ess_tail)):
+    worst = int(statistics.r_hat.argmax())
+    if statistics.r_hat[worst] > R_HAT_MAX:
+        yield f'R-hat of coordinate {worst} is {statistics.r_hat[worst]:.3f}, above {R_HAT_MAX}'
+    for where, sizes in (('the middle', statistics.ess_bulk), ('the tails', statistics.ess_tail)):
         least = int(sizes.argmin())
         if sizes[least] < ESS_MIN:
             yield (

@@ -1,11 +1,11 @@
 """
-Effective sample size, R-hat and what follows from them, for one quantity of several chains.
+Effective sample size (ESS), R-hat and autocorrelation time of one quantity of several chains.
 
-``chains`` is (n_chains, n_draws), with 4 draws or more. Every chain is cut in two halves, so that
-a drift within one shows as a difference between two. The formulas are those of Vehtari et al.
-(2021), with Geyer's initial monotone sequence, and give the numbers of arviz. They part from it
-where nothing varies: arviz takes constant chains for independent draws, and here they count as a
-single one.
+``chains`` is (n_chains, n_draws), with 4 draws or more. Every chain is split in two halves, so
+that a drift within one chain shows as a difference between two. The formulas are those of Vehtari
+et al. (2021), with Geyer's initial monotone sequence, and give arviz's numbers. They differ from
+arviz where nothing varies: constant chains count as a single draw here, and as independent draws
+in arviz.
 """
 
 import math
@@ -14,42 +14,42 @@ from hnr_planner.core.checks import Floats
 from hnr_planner.core.sampling.diagnostics.ranks import folded, rank_normalised
 import numpy as np
 
-#: The tails are what lies beyond these quantiles.
+#: Quantiles that the tail ESS is computed for.
 TAILS = (0.05, 0.95)
 
 
 def r_hat(chains: Floats) -> float:
     """
-    Return how much wider all chains are together than each by itself; 1 for chains that agree.
+    Return R-hat: the spread of all chains together over that within chains; 1 where they agree.
 
-    The larger of two: of the rank-normalised values, and of their folded ones, which tell chains
-    that agree on the mean and not on the spread. inf where no chain moves.
+    It is the larger of two values: that of the rank-normalised draws, and that of the folded
+    draws, which detects chains of equal mean and different spread. inf where no chain moves.
     """
     halves = split(chains)
     return max(_r_hat(rank_normalised(halves)), _r_hat(rank_normalised(folded(halves))))
 
 
 def ess_bulk(chains: Floats) -> float:
-    """Return how many independent draws would tell as much about the middle of the law."""
+    """Return the bulk ESS: effective sample size for the middle of the law."""
     return effective_size(rank_normalised(split(chains)))
 
 
 def ess_tail(chains: Floats) -> float:
-    """Return how many independent draws would tell as much about the worse of the two tails."""
+    """Return the tail ESS: the smaller effective sample size of the two ``TAILS``."""
     quantiles = np.quantile(chains, TAILS)
     return min(effective_size(split((chains <= q).astype(float))) for q in quantiles)
 
 
 def ess_mean(chains: Floats) -> float:
-    """Return how many independent draws would tell as much about the mean."""
+    """Return the effective sample size for the mean."""
     return effective_size(split(chains))
 
 
 def time_within(chains: Floats) -> float:
     """
-    Return the autocorrelation time [draws] that the chains show, each by itself.
+    Return the autocorrelation time [draws] within chains, each about its own mean.
 
-    Chains that are confined to different parts look as quick as they are in their part.
+    For chains confined to different regions it is the time within these regions.
     """
     covariances = _autocovariances(_rescaled(split(chains)))
     if covariances[0] == 0.0:
@@ -58,7 +58,7 @@ def time_within(chains: Floats) -> float:
 
 
 def split(chains: Floats) -> Floats:
-    """Return the first halves, then the second halves; the middle one of an odd number is left."""
+    """Return the first halves, then the second halves, without the middle of an odd number."""
     half = chains.shape[1] // 2
     return np.concatenate([chains[:, :half], chains[:, -half:]])
 
@@ -76,13 +76,14 @@ def effective_size(chains: Floats) -> float:
 
 
 def _rescaled(chains: Floats) -> Floats:
-    """Return values between -1 and 1, about 0, whose squares are neither lost nor infinite."""
+    """Return centred values in [-1, 1], whose squares neither underflow nor overflow."""
     centred = chains - chains.mean()
     largest = np.abs(centred).max()
     return centred / largest if np.ptp(chains) > 0.0 else np.zeros_like(chains)
 
 
 def _r_hat(chains: Floats) -> float:
+    """Return the R-hat of chains (m, n) as they are; inf where none varies."""
     n = chains.shape[1]
     within = chains.var(axis=1, ddof=1).mean()
     if within == 0.0:
@@ -102,11 +103,11 @@ def _autocovariances(chains: Floats) -> Floats:
 
 def _autocorrelation_time(autocorrelations: Floats, n_draws: int) -> float:
     """
-    Return the sum of the autocorrelations over all lags, before and after, as far as it is seen.
+    Return the sum of the autocorrelations over all lags, negative ones included [draws].
 
-    Sums over two neighbouring lags are positive and falling for a reversible chain: what comes
-    after the first that is not positive is noise (Geyer, "Practical Markov chain Monte Carlo",
-    1992, section 3.3). Chains whose draws repel each other are not credited with more than
+    For a reversible chain the sums over two neighbouring lags are positive and decreasing: the
+    first one that is not positive, and all after it, are noise (Geyer, "Practical Markov chain
+    Monte Carlo", 1992, Section 3.3). The effective size of antithetic chains is limited to
     n log10(n) draws.
     """
     n = len(autocorrelations)
@@ -114,8 +115,8 @@ def _autocorrelation_time(autocorrelations: Floats, n_draws: int) -> float:
     even, odd = autocorrelations[: 2 * last + 2].reshape(-1, 2).T.copy()
     even[0] = 1.0
     pairs = even + odd
-    ended = np.flatnonzero(pairs <= 0.0)
-    end = int(ended[0]) if len(ended) else last
-    falling = np.minimum.accumulate(pairs[:end])
-    time = -1.0 + 2.0 * falling.sum() + max(even[end], 0.0)
+    noise = np.flatnonzero(pairs <= 0.0)
+    end = int(noise[0]) if len(noise) else last
+    decreasing = np.minimum.accumulate(pairs[:end])
+    time = -1.0 + 2.0 * decreasing.sum() + max(even[end], 0.0)
     return max(float(time), 1.0 / math.log10(n_draws))

@@ -1,4 +1,4 @@
-"""Ranks in place of values: what makes a diagnosis indifferent to scale and to heavy tails."""
+"""Rank normalisation, which makes diagnostics independent of scale and of heavy tails."""
 
 from functools import lru_cache
 from statistics import NormalDist
@@ -9,14 +9,14 @@ import numpy as np
 
 def rank_normalised(values: Floats) -> Floats:
     """
-    Return the standard normal quantile of every value's rank among all, in the same shape.
+    Return the standard normal quantile of every value's rank, in the same shape.
 
     Equal values share their average rank (Vehtari, Gelman, Simpson, Carpenter and Buerkner,
     "Rank-normalization, folding, and localization", 2021, section 4.1).
     """
-    _, place, count = np.unique(values.ravel(), return_inverse=True, return_counts=True)
+    _, index, count = np.unique(values.ravel(), return_inverse=True, return_counts=True)
     twice_the_rank = 2 * np.cumsum(count) - count + 1
-    return _scores(values.size)[twice_the_rank - 2][place].reshape(values.shape)
+    return _scores(values.size)[twice_the_rank - 2][index].reshape(values.shape)
 
 
 def folded(values: Floats) -> Floats:
@@ -26,7 +26,7 @@ def folded(values: Floats) -> Floats:
 
 @lru_cache(maxsize=1)
 def _scores(n: int) -> Floats:
-    """Quantiles (2 n - 1,) of the ranks 1, 1.5, ..., n of ``n`` values; the last n are kept."""
+    """Return the quantiles (2 n - 1,) of the ranks 1, 1.5, ..., n; the last call is cached."""
     below = (np.arange(1.0, (n + 1) / 2 + 0.25, 0.5) - 0.375) / (n + 0.25)
     lower = np.fromiter(map(NormalDist().inv_cdf, below.tolist()), float, len(below))
     scores = np.concatenate([lower, -lower[-2::-1]])

@@ -1,4 +1,4 @@
-"""The verdict: no chain that is stuck passes, and chains that mix do."""
+"""The verdict of diagnose: stuck and confined chains never pass, and chains that mix do."""
 
 from test.core.sampling.diagnostics.chains import autoregressive
 from test.laws import maps
@@ -14,8 +14,9 @@ def test_chains_that_mix_converge():
     found = diagnose(DRAWS)
     assert found.converged
     assert found.message.startswith('converged: R-hat at most 1.00')
-    assert found.parts_missed.tolist() == found.repeats.tolist() == [0, 0, 0, 0]
-    assert found.longest_stay.tolist() == [1, 1, 1, 1]
+    assert found.cells_missed.tolist() == found.repeats.tolist() == [0, 0, 0, 0]
+    assert found.longest_holding_time.tolist() == [1, 1, 1, 1]
+    assert not found.separated.any()
     assert found.r_hat.shape == found.ess_tail.shape == found.mcse_mean.shape == (3,)
 
 
@@ -90,8 +91,8 @@ def with_chain(draws, chain, points):
         (one_frozen_in_the_middle, 'not converged: chain 2 never moved;'),
         (frozen_in_one_coordinate, 'chain 3 never moved in coordinate 1'),
         (frozen_towards_the_end, 'chain 0 stayed on one point for 300 draws'),
-        (one_room_each, 'chain 0 never entered 8 of 16 parts'),
-        (opposite_quarters_each, 'of 16 parts with as many draws each'),
+        (one_room_each, 'chain 0 never entered 8 of 16 cells'),
+        (opposite_quarters_each, 'of 16 cells of equal weight'),
         (one_left_out_of_a_corner, 'chain 1 never entered'),
         (slow, 'R-hat of coordinate'),
         (tiny_steps, 'effective draws in the middle, below 400'),
@@ -111,14 +112,15 @@ def test_r_hat_alone_and_effective_sizes_alone_would_have_passed_some():
     hidden = diagnose(opposite_quarters_each(DRAWS))
     assert hidden.r_hat.max() < 1.01
     assert min(hidden.ess_bulk.min(), hidden.ess_tail.min()) > 400
-    assert len(hidden.reasons) == 4
+    assert len(hidden.reasons) == 5
+    assert hidden.separated.sum() == 8
 
 
 def test_chains_that_mix_are_hardly_ever_called_confined():
-    """A part is missed by one of 8 mixing chains in 1 of a million runs; here 300 are drawn."""
+    """One of 8 mixing chains misses a cell in 1 of a million runs; here are 300 runs."""
     for seed in range(300):
         found = diagnose(autoregressive(0.7, 8, 400, 2, seed))
-        assert not found.parts_missed.any(), seed
+        assert not found.cells_missed.any(), seed
 
 
 def test_real_walks_in_a_hall_converge_and_in_narrow_rooms_do_not():

@@ -1,8 +1,8 @@
-"""Draws that repeat are counted, chain by chain."""
+"""Repeated draws and holding times are counted for each chain."""
 
 from itertools import pairwise
 
-from hnr_planner.core.sampling.diagnostics.stays import frozen, longest_stay, repeats
+from hnr_planner.core.sampling.diagnostics.holding import frozen, longest_holding_time, repeats
 import numpy as np
 import pytest
 
@@ -14,7 +14,7 @@ def draws(*chains):
 
 
 @pytest.mark.parametrize(
-    ('chain', 'count', 'stay'),
+    ('chain', 'count', 'longest'),
     [
         ('12345', 0, 1),
         ('11234', 1, 2),
@@ -26,10 +26,10 @@ def draws(*chains):
         ('22122', 2, 2),
     ],
 )
-def test_repeats_and_the_longest_stay(chain, count, stay):
+def test_repeats_and_the_longest_holding_time(chain, count, longest):
     both = draws(chain, '98765')
     assert repeats(both).tolist() == [count, 0]
-    assert longest_stay(both).tolist() == [stay, 1]
+    assert longest_holding_time(both).tolist() == [longest, 1]
 
 
 def test_a_draw_repeats_when_all_of_its_coordinates_do():
@@ -37,7 +37,7 @@ def test_a_draw_repeats_when_all_of_its_coordinates_do():
     assert repeats(zigzag).tolist() == [1]
 
 
-def test_a_frozen_coordinate_is_told_from_one_that_comes_back():
+def test_a_frozen_coordinate_differs_from_one_that_comes_back():
     both = draws('1211', '1111')
     assert frozen(both).tolist() == [[False, True], [True, True]]
 
@@ -45,8 +45,8 @@ def test_a_frozen_coordinate_is_told_from_one_that_comes_back():
 def test_against_loops():
     x = np.random.default_rng(0).integers(2, size=(50, 40, 1)).astype(float)
     for k, chain in enumerate(x):
-        stays = [1]
+        times = [1]
         for before, now in pairwise(chain):
-            stays[-1:] = [stays[-1] + 1] if before == now else [stays[-1], 1]
-        assert repeats(x)[k] == 40 - len(stays)
-        assert longest_stay(x)[k] == max(stays)
+            times[-1:] = [times[-1] + 1] if before == now else [times[-1], 1]
+        assert repeats(x)[k] == 40 - len(times)
+        assert longest_holding_time(x)[k] == max(times)

@@ -1,0 +1,70 @@
+"""
+The experiments by name: one line for each, read by the command line, the pages and the tests.
+
+Neither numba nor matplotlib is imported here, so that ``--help`` is fast: ``load`` imports the
+module of an experiment when it is asked for. A new experiment is a module, or package, of
+``hnr_planner.experiments`` with a value ``EXPERIMENT``, and a line in ``EXPERIMENTS``.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import NamedTuple, TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from hnr_planner.experiments.experiment import Experiment
+
+
+class ExperimentEntry(NamedTuple):
+    """
+    An experiment in the table.
+
+    Attributes
+    ----------
+    name : str
+        Name of its command, its page and its files.
+    module : str
+        Full name of the module that defines ``EXPERIMENT``.
+    summary : str
+        What it measures, in one line.
+
+    """
+
+    name: str
+    module: str
+    summary: str
+
+
+_PACKAGE = 'hnr_planner.experiments'
+
+#: Every experiment by its name, in the order of ``docs/README.md``.
+EXPERIMENTS = {
+    name: ExperimentEntry(name, f'{_PACKAGE}.{name}', summary)
+    for name, summary in (
+        ('spiral', 'Transitions through a spiral corridor, by the width of its arms.'),
+        (
+            'clouds',
+            'The samples of a search through the spiral: how soon, how evenly, how near to walls.',
+        ),
+        (
+            'corridor',
+            'Transitions and integration steps through a corridor with two turns, under '
+            'kinematics.',
+        ),
+        ('safety', 'Distance to obstacles along the paths of different planners.'),
+        ('mixing', 'How many steps walks need to forget where they began.'),
+        (
+            'theory',
+            'How many transitions a walk takes into a goal: computed, bounded and measured.',
+        ),
+    )
+}
+
+#: Names of the experiments, in the same order.
+NAMES = tuple(EXPERIMENTS)
+
+
+def load(name: str) -> Experiment:
+    """Import an experiment of ``EXPERIMENTS`` and return it."""
+    experiment: Experiment = import_module(EXPERIMENTS[name].module).EXPERIMENT
+    return experiment
