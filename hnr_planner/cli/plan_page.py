@@ -8,7 +8,7 @@ from typing import Any
 
 from hnr_planner.core import ALGORITHMS, GridSpace, plan, PlanResult
 from hnr_planner.core.planning.registry import make_planner
-from hnr_planner.maps import OccupancyMap
+from hnr_planner.maps import is_moving_ai, OccupancyMap
 from hnr_planner.page import Shown, write_page
 
 #: What a request can hold that is a planner's own, and what it means where a planner has it not.
@@ -53,7 +53,7 @@ def write_plan_page(
         ],
         goal_radius=arguments.goal_radius,
         simplify=arguments.simplify,
-        wishes=_in_words(arguments, result.seed),
+        wishes=_in_words(arguments, request, result.seed),
     )
 
 
@@ -66,8 +66,8 @@ def answer(space: GridSpace, request: dict[str, Any]) -> Shown:
     return Shown(plan(space, **taken), asked=False, notes=notes)
 
 
-def _in_words(arguments: argparse.Namespace, seed: int) -> list[str]:
-    """Return what else than start and goal was asked for."""
+def _in_words(arguments: argparse.Namespace, request: dict[str, Any], seed: int) -> list[str]:
+    """Return the options of the request, as phrases for the page."""
     words = {
         f'robot radius {arguments.robot_radius:g} m': True,
         'unknown cells free': arguments.unknown == 'free',
@@ -75,8 +75,9 @@ def _in_words(arguments: argparse.Namespace, seed: int) -> list[str]:
         f'clearance {arguments.clearance:g} m': arguments.clearance > 0.0,
         f'{arguments.alternatives} different paths': arguments.alternatives > 1,
         'not simplified': not arguments.simplify,
-        f'the best path of {arguments.optimize_for:g} s': arguments.optimize_for > 0.0,
+        f'the best path of {request["optimize_for"]:g} s': request['optimize_for'] > 0.0,
         f'at most {arguments.time_limit:g} s': True,
         f'seed {seed}': True,
+        'swamp (S) free, water (W) and trees (T) blocked': is_moving_ai(arguments.map),
     }
     return [text for text, holds in words.items() if holds]
