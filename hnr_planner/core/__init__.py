@@ -23,7 +23,7 @@ _NAMES_OF_MODULES = {
     'planning.planners.rrt_connect': ('RRTConnect',),
     'planning.postprocessing.simplify': ('simplify',),
     'planning.registry': ('ALGORITHMS',),
-    'planning.result': ('FirstSolution', 'PlanResult', 'PlannerStatus'),
+    'planning.result': ('FirstSolution', 'PlanResult', 'PlannerStatus', 'SearchResult'),
     'planning.roadmap.roadmap': ('Roadmap',),
     'sampling.chains': ('Chains', 'begin_chains', 'walk_on'),
     'sampling.diagnostics': (
@@ -53,7 +53,9 @@ _NAMES_OF_MODULES = {
         'UnionSpace',
     ),
     'systems': ('Car', 'DoubleIntegrator', 'System', 'Trajectory'),
+    'trajectories.plan_trajectory': ('plan_trajectory',),
     'trajectories.registry': ('KINODYNAMIC_ALGORITHMS', 'KINODYNAMIC_PLANNERS'),
+    'trajectories.result': ('TrajectoryResult',),
     'warming': ('warm_up',),
 }
 _MODULE_OF = {name: module for module, names in _NAMES_OF_MODULES.items() for name in names}

@@ -15,6 +15,7 @@ from hnr_planner.core.planning.registry import ALGORITHMS as ALGORITHMS
 from hnr_planner.core.planning.result import FirstSolution as FirstSolution
 from hnr_planner.core.planning.result import PlannerStatus as PlannerStatus
 from hnr_planner.core.planning.result import PlanResult as PlanResult
+from hnr_planner.core.planning.result import SearchResult as SearchResult
 from hnr_planner.core.planning.roadmap.roadmap import Roadmap as Roadmap
 from hnr_planner.core.sampling.chains import begin_chains as begin_chains
 from hnr_planner.core.sampling.chains import Chains as Chains
@@ -49,6 +50,8 @@ from hnr_planner.core.systems import Car as Car
 from hnr_planner.core.systems import DoubleIntegrator as DoubleIntegrator
 from hnr_planner.core.systems import System as System
 from hnr_planner.core.systems import Trajectory as Trajectory
+from hnr_planner.core.trajectories.plan_trajectory import plan_trajectory as plan_trajectory
 from hnr_planner.core.trajectories.registry import KINODYNAMIC_ALGORITHMS as KINODYNAMIC_ALGORITHMS
 from hnr_planner.core.trajectories.registry import KINODYNAMIC_PLANNERS as KINODYNAMIC_PLANNERS
+from hnr_planner.core.trajectories.result import TrajectoryResult as TrajectoryResult
 from hnr_planner.core.warming import warm_up as warm_up
