@@ -7,14 +7,14 @@ Importing this module is cheap; the map and the planner are imported when a map 
 from __future__ import annotations
 
 import argparse
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from itertools import takewhile
 import math
 from pathlib import Path
 import re
 import sys
 import threading
-from typing import Any, NoReturn, TYPE_CHECKING, TypeVar
+from typing import Any, NoReturn, Protocol, TYPE_CHECKING, TypeVar
 
 if TYPE_CHECKING:
     from hnr_planner.core import GridSpace
@@ -31,6 +31,18 @@ PICTURES = ('.png', '.svg', '.pdf')
 KINDS = {float: 'number', int: 'whole number'}
 #: Time that loading the kernels may take before a note explains the wait [s].
 PATIENCE = 2.0
+
+
+class Listed(Protocol):
+    """An entry of a registry."""
+
+    @property
+    def name(self) -> str:
+        """Return the name that the command line takes."""
+
+    @property
+    def summary(self) -> str:
+        """Return one line about it."""
 
 
 class BadInputError(ValueError):
@@ -127,6 +139,14 @@ def add_command(
     )
     parser.set_defaults(run=run)
     return parser
+
+
+def listing(entries: Iterable[Listed]) -> str:
+    """Return names and summaries as lines of a help text."""
+    entries = list(entries)
+    width = max(len(entry.name) for entry in entries)
+    lines = (f'  {entry.name:<{width}}  {entry.summary}' for entry in entries)
+    return '\n'.join(lines).replace('%', '%%')
 
 
 def error_line(message: str) -> str:

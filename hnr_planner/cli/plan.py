@@ -14,6 +14,7 @@ from hnr_planner.cli.arguments import (
     count,
     keep_map_files,
     length,
+    listing,
     open_map,
     page,
     picture,
@@ -21,19 +22,12 @@ from hnr_planner.cli.arguments import (
     whole,
 )
 from hnr_planner.cli.extras import require_extra
+from hnr_planner.core.planning.registry import ALGORITHMS, PLANNERS
 
 if TYPE_CHECKING:
     from hnr_planner.core import GridSpace, PlanResult
     from hnr_planner.maps import OccupancyMap
 
-#: Names of the algorithms; literal, so that ``--help`` does not import the core. A test compares.
-ALGORITHM_NAMES = (
-    'auto',
-    'hit_and_run',
-    'rrt',
-    'hit_and_run_connect',
-    'rrt_connect',
-)
 #: Default of ``--optimize-for`` [s].
 OPTIMIZE_FOR = 0.02
 #: Exit code when no path was found.
@@ -41,6 +35,9 @@ NO_PATH = 1
 EPILOG = """\
 example:
   %(prog)s office.yaml --start 2 3 --goal 30 20 --robot-radius 0.22 --plot plan.png
+
+algorithms:
+{algorithms}
 
 Exit code 0: a path was found. 1: no path was found; the status names the reason: INVALID_START,
 INVALID_GOAL, UNREACHABLE (proved) or TIMEOUT. 2: the arguments or the map are not usable.
@@ -56,16 +53,17 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
         run,
         summary='find a path between two points of a map',
         description='Find a path between two points of a map, clear of obstacles for the robot.',
-        epilog=EPILOG,
+        epilog=EPILOG.format(algorithms=listing(PLANNERS)),
     )
     add_map_arguments(parser)
     for name in ('start', 'goal'):
         parser.add_point(f'--{name}', required=True, text=f'the {name} in the map frame [m]')
     parser.add_argument(
         '--algorithm',
-        choices=ALGORITHM_NAMES,
+        choices=ALGORITHMS,
         default='auto',
-        help='the planner; default auto, the best one for a map',
+        metavar='A',
+        help='the planner, one of those below; default auto',
     )
     parser.add_argument(
         '--goal-radius',
@@ -116,6 +114,22 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
         action='store_false',
         help='return the path as the search found it, with all its detours',
     )
+    parser.add_argument(
+        '--goal-tolerance',
+        type=length,
+        default=0.0,
+        metavar='R',
+        help='where the goal is blocked or unreachable, end at the nearest reachable point within '
+        'this distance [m]; default 0',
+    )
+    parser.add_argument(
+        '--start-escape',
+        type=length,
+        default=0.0,
+        metavar='R',
+        help='where the start lies within the radius of the robot from an obstacle, begin with a '
+        'straight way out of at most this length [m]; default 0',
+    )
     parser.add_argument('--json', action='store_true', help='print the result as a JSON object')
     parser.add_argument(
         '--plot', type=picture, metavar='FILE.png', help='draw map, samples and path'
@@ -157,7 +171,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _request(arguments: argparse.Namespace) -> dict[str, Any]:
     """Return the arguments of the function ``plan`` other than the space."""
-    request = {
+    return {
         'start': arguments.start,
         'goal': arguments.goal,
         'algorithm': arguments.algorithm,
@@ -167,8 +181,10 @@ def _request(arguments: argparse.Namespace) -> dict[str, Any]:
         'simplify': arguments.simplify,
         'optimize_for': optimize_for(arguments),
         'alternatives': arguments.alternatives,
+        'clearance': arguments.clearance,
+        'goal_tolerance': arguments.goal_tolerance,
+        'start_escape': arguments.start_escape,
     }
-    return request | ({'clearance': arguments.clearance} if arguments.clearance else {})
 
 
 def optimize_for(arguments: argparse.Namespace) -> float:
@@ -191,6 +207,8 @@ def _json(result: PlanResult) -> str:
             'length': result.length if math.isfinite(result.length) else None,
             'path': result.path.tolist(),
             'paths': [path.tolist() for path in result.paths],
+            'goal_offset': result.goal_offset,
+            'escape': result.escape,
         }
     )
 

@@ -11,9 +11,10 @@ from test.cli.conftest import at, OFFICE, Ran, ROOT, run_process
 from test.cli.pictures import check_picture
 
 from hnr_planner.cli.main import build_parser
-from hnr_planner.cli.plan import ALGORITHM_NAMES, OPTIMIZE_FOR, optimize_for
+from hnr_planner.cli.plan import OPTIMIZE_FOR, optimize_for
 from hnr_planner.cli.sample import WALK_NAMES
 from hnr_planner.core import ALGORITHMS, GridSpace, WALKS
+from hnr_planner.core.planning.registry import PLANNERS
 from hnr_planner.maps import load_map, OccupancyMap, save_map
 import numpy as np
 import pytest
@@ -29,6 +30,8 @@ KEYS = [
     'length',
     'path',
     'paths',
+    'goal_offset',
+    'escape',
 ]
 
 
@@ -37,9 +40,11 @@ def ends(rooms: OccupancyMap) -> list[object]:
     return ['--start', *at(rooms, 5, 5), '--goal', *at(rooms, 8, 75)]
 
 
-def test_help_names_what_the_core_has() -> None:
-    assert set(ALGORITHM_NAMES) == set(ALGORITHMS)
+def test_help_names_what_the_core_has(run: Run) -> None:
     assert set(WALK_NAMES) == set(WALKS)
+    text = run('plan', '--help').out
+    for entry in PLANNERS:
+        assert f'  {entry.name} ' in text and entry.summary in text
 
 
 @pytest.mark.parametrize('command', [[], ['plan'], ['sample'], ['demo'], ['experiment']])
@@ -230,9 +235,37 @@ def test_clearance_keeps_the_path_away_from_walls(
     space = GridSpace.from_occupancy(rooms.data, rooms.resolution, rooms.origin)
     nearest, less_near = (space.path_clearance(each['path']) for each in (shortest, wider))
     assert nearest < 0.05 < 0.1 < less_near
-    refused = run(*command, '--algorithm', 'rrt', '--clearance', 0.2)
+    refused = run(*command, '--no-simplify', '--clearance', 0.2)
     assert refused.code == 2
-    assert "no setting 'clearance'" in refused.err
+    assert 'clearance must be 0 when simplify is false' in refused.err
+
+
+def test_goal_tolerance_ends_beside_a_blocked_goal(
+    run: Run, rooms: OccupancyMap, rooms_file: Path
+) -> None:
+    command = ['plan', rooms_file, '--start', *at(rooms, 5, 5), '--goal', *at(rooms, 5, 40)]
+    command += ['--seed', 1, '--time-limit', 600, '--json']
+    assert json.loads(run(*command).out)['status'] == 'INVALID_GOAL'
+    ran = run(*command, '--goal-tolerance', 0.5)
+    result = json.loads(ran.out)
+    assert (ran.code, result['status']) == (0, 'SOLVED')
+    offset = math.dist(result['path'][-1], at(rooms, 5, 40))
+    assert 0.0 < offset <= 0.5
+    assert result['goal_offset'] == pytest.approx(offset)
+
+
+def test_start_escape_leads_out_of_the_inflation(
+    run: Run, rooms: OccupancyMap, rooms_file: Path
+) -> None:
+    command = ['plan', rooms_file, '--start', *at(rooms, 5, 2), '--goal', *at(rooms, 8, 75)]
+    command += ['--robot-radius', 0.25, '--seed', 1, '--time-limit', 600, '--json']
+    assert json.loads(run(*command).out)['status'] == 'INVALID_START'
+    ran = run(*command, '--start-escape', 1.0)
+    result = json.loads(ran.out)
+    assert (ran.code, result['status']) == (0, 'SOLVED')
+    assert result['path'][0] == list(at(rooms, 5, 2))
+    assert result['escape'] == pytest.approx(math.dist(*result['path'][:2]))
+    assert 0.0 < result['escape'] <= 1.0
 
 
 def test_unknown_cells_block_unless_told_otherwise(run: Run, tmp_path: Path) -> None:
