@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 from hnr_planner.core.planning.registry import PLANNERS
 from hnr_planner.core.planning.result import PlanResult
 from hnr_planner.core.spaces import GridSpace
-from hnr_planner.drawing import cell_kinds, KINDS, known_box
+from hnr_planner.drawing import cell_kinds, KINDS, kinds_present, known_box
 from hnr_planner.maps import OccupancyMap
 from matplotlib.colors import to_rgb
 import numpy as np
@@ -89,7 +89,7 @@ def write_page(
     kinds = cell_kinds(occupancy, space.blocked)
     data = {
         'map': _map(occupancy, kinds),
-        'kinds': [KINDS[kind] for kind in np.unique(kinds)],
+        'kinds': [KINDS[kind] for kind in kinds_present(kinds)],
         'start': np.asarray(start, dtype=float).tolist(),
         'goal': np.asarray(goal, dtype=float).tolist(),
         'goal_radius': goal_radius,
@@ -111,9 +111,9 @@ def write_page(
     file.write_text(page, encoding='utf-8')
 
 
-def _map(occupancy: OccupancyMap, kinds: NDArray[np.int8]) -> dict[str, Any]:
+def _map(occupancy: OccupancyMap, kinds: NDArray[np.uint8]) -> dict[str, Any]:
     """Return the map: an image of the kinds of cells, row 0 first, with resolution and origin."""
-    image = Image.fromarray(kinds.astype(np.uint8), mode='P')
+    image = Image.fromarray(kinds, mode='P')
     colours = np.round(255 * np.array([to_rgb(colour) for _, colour in KINDS]))
     image.putpalette(colours.astype(np.uint8).tobytes())
     written = BytesIO()

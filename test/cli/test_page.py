@@ -33,6 +33,8 @@ from selenium.webdriver.common.by import By  # noqa: E402
 from selenium.webdriver.common.keys import Keys  # noqa: E402
 from selenium.webdriver.support.ui import WebDriverWait  # noqa: E402
 
+pytestmark = pytest.mark.usefixtures('compiled')
+
 OPTIONS = (
     '--headless --no-sandbox --disable-gpu --disable-quic --no-first-run --window-size=1400,860 '
     '--disable-background-networking --disable-component-update --disable-sync '

@@ -19,6 +19,8 @@ from hnr_planner.maps import load_map, OccupancyMap, save_map
 import numpy as np
 import pytest
 
+pytestmark = pytest.mark.usefixtures('compiled')
+
 Run = Callable[..., Ran]
 KEYS = [
     'status',
