@@ -5,7 +5,11 @@ SHELL := /bin/bash
 .SHELLFLAGS := -e -o pipefail -c
 
 VENV := .venv/bin/python
-STAMP := .venv/installed
+
+# What is installed for what: a larger set includes the smaller ones, and leaves their stamps too.
+DEMO := .venv/installed-for-demo
+TEST := .venv/installed-for-test
+ALL := .venv/installed
 
 # A sourced ROS must not mix with the ROS wheels in .venv, nor another environment's wheels: the
 # guard below would keep those in .venv from finding their libraries.
@@ -13,13 +17,13 @@ unexport AMENT_PREFIX_PATH LD_LIBRARY_PATH PYTHONHOME PYTHONPATH RMW_IMPLEMENTAT
 unexport _ROS_WHEELS_BOOTSTRAP_COMPLETE
 
 # A clone that was moved or copied has a .venv that still points at the old place.
-ifneq ($(shell cat $(STAMP) 2>/dev/null),$(CURDIR))
-$(shell rm -f $(STAMP))
+ifneq ($(shell cat $(DEMO) 2>/dev/null),$(CURDIR))
+$(shell rm -f $(DEMO) $(TEST) $(ALL))
 endif
 
 .PHONY: help
 help:
-	@echo 'make install               make .venv with everything in it, ROS 2 included'
+	@echo 'make install               make .venv with everything: ROS 2, test and check tools'
 	@echo 'make demo                  plan with real ROS nodes and draw demo.png'
 	@echo 'make demo MAP=FILE.yaml    the same on a map of your own'
 	@echo 'make demo KEEP=1           leave the nodes running, to try calls by hand'
@@ -30,17 +34,25 @@ help:
 	@echo 'make bench QUICK=1         the same in some minutes, for a look'
 	@echo 'make figures               the experiments of docs/ again, half an hour'
 	@echo 'make figures RUNS=2        a look at them, in experiments/'
-	@echo 'make format                put the sources into shape'
+	@echo 'make format                format the sources'
 	@echo 'make clean                 remove .venv and all that was built'
 	@echo
-	@echo 'Each works on a fresh clone. PYTHON=... names the Python for .venv (3.11 to 3.13).'
+	@echo 'Each works on a fresh clone and installs what it needs into .venv.'
+	@echo 'PYTHON=... names the Python for it (3.11 to 3.13).'
 
 .PHONY: install
-install: $(STAMP)
+install: $(ALL)
+
+$(DEMO): EXTRAS := ros,plot
+$(DEMO): STAMPS := $(DEMO)
+$(TEST): EXTRAS := ros,plot,experiments,test
+$(TEST): STAMPS := $(DEMO) $(TEST)
+$(ALL): EXTRAS := ros,plot,experiments,test,check
+$(ALL): STAMPS := $(DEMO) $(TEST) $(ALL)
 
 SUITABLE := import ensurepip, sys, venv; sys.exit(not (3, 11) <= sys.version_info[:2] <= (3, 13))
 
-$(STAMP): setup.py
+$(DEMO) $(TEST) $(ALL): setup.py
 	@for python in $(if $(PYTHON),'$(PYTHON)',python3.12 python3.11 python3.13 python3 \
 	               /usr/bin/python3); do \
 	  if "$$python" -c '$(SUITABLE)' >/dev/null 2>&1; then found=$$python; break; fi; \
@@ -56,28 +68,28 @@ $(STAMP): setup.py
 	  echo "Making .venv with $$("$$found" --version) ..."; \
 	  "$$found" -m venv --clear .venv; \
 	fi
-	@echo 'Installing into .venv, a minute or two; .venv/install.log has the details.'
+	@echo 'Installing $(EXTRAS) into .venv, about a minute; .venv/install.log has the details.'
 	@PYTHONUNBUFFERED=1 $(VENV) -m pip install --disable-pip-version-check \
-	  --editable '.[ros,test,check]' 2>&1 | tee .venv/install.log | \
+	  --editable '.[$(EXTRAS)]' 2>&1 | tee .venv/install.log | \
 	while read -r line; do case "$$line" in \
 	  Collecting*|Processing*) printf '.' ;; \
 	  'Installing collected'*) printf '\nUnpacking, half a minute more ...\n' ;; \
 	  ERROR*|error*) printf '\n%s\n' "$$line" ;; \
 	esac; done
-	@printf '%s' "$(CURDIR)" > $(STAMP)
-	@echo 'Installed. Next: make demo, or: source .venv/bin/activate'
+	@for stamp in $(STAMPS); do printf '%s' '$(CURDIR)' > $$stamp; done
+	@echo 'Installed. Try make demo, or: source .venv/bin/activate'
 
 .PHONY: demo
-demo: install
+demo: $(DEMO)
 	$(VENV) -m hnr_planner demo $(if $(MAP),--map '$(MAP)') $(if $(KEEP),--keep)
 
 # A worker for each core, which takes whole files: the tests of a file share a node, in their order.
 .PHONY: test
-test: install
+test: $(TEST)
 	$(VENV) -m pytest --numprocesses logical --maxprocesses 4 --dist loadfile $(ARGS)
 
 .PHONY: soak
-soak: install
+soak: $(TEST)
 	HNR_SOAK=1 $(VENV) -m pytest test/ros/soak $(ARGS)
 
 .PHONY: check
@@ -85,7 +97,7 @@ check: lint
 	@$(MAKE) --no-print-directory test
 
 .PHONY: lint
-lint: install
+lint: $(ALL)
 	$(VENV) -m ruff format --check .
 	$(VENV) -m ruff check .
 	$(VENV) -m flake8 .
@@ -95,7 +107,7 @@ lint: install
 
 # A competitor that has no wheel for this machine is missed, not fatal: the benchmark says so.
 .PHONY: bench
-bench: install
+bench: $(TEST)
 	@for competitor in 'ompl>=2.0' 'nano-astar>=0.1' 'hopsy>=1.7'; do \
 	  $(VENV) -m pip install --disable-pip-version-check --quiet "$$competitor" || true; \
 	done
@@ -103,7 +115,7 @@ bench: install
 
 # The tables of the pages in docs/ follow; what the pages say of them is for people to write.
 .PHONY: figures
-figures: install
+figures: $(TEST)
 ifdef RUNS
 	$(VENV) -m hnr_planner experiment --runs $(RUNS)
 else
@@ -112,7 +124,7 @@ else
 endif
 
 .PHONY: format
-format: install
+format: $(ALL)
 	$(VENV) -m ruff check --fix --exit-zero --quiet .
 	$(VENV) -m ruff format .
 

@@ -15,12 +15,20 @@ setup(
     maintainer='The hnr_planner developers',
     maintainer_email='maintainers@hnr-planner.example',
     packages=find_packages(include=[package_name, f'{package_name}.*']),
-    package_data={package_name: ['page/*.css', 'page/*.html', 'page/*.js']},
+    package_data={
+        package_name: [
+            'py.typed',
+            '*.pyi',
+            'core/*.pyi',
+            'page/*.css',
+            'page/*.html',
+            'page/*.js',
+        ],
+    },
     python_requires='>=3.11',
-    # The lower bounds of what Ubuntu 24.04 has are that system's own releases.
+    # What a robot imports: the core, the maps, the server and the nodes. The lower bounds of what
+    # Ubuntu 24.04 has are that system's own releases.
     install_requires=[
-        'joblib>=1.3',
-        'matplotlib>=3.6',
         'numba>=0.60',
         'numpy>=1.26',
         'opencv-python-headless>=4.6',
@@ -28,9 +36,12 @@ setup(
         'pyyaml>=6.0',
         'scipy>=1.11',
         'shapely>=2.0',
-        'tqdm>=4.66',
     ],
     extras_require={
+        # Pictures: `plan --plot`, `plan --html`, `sample --plot`, `demo`.
+        'plot': ['matplotlib>=3.6'],
+        # The command `experiment`.
+        'experiments': ['joblib>=1.3', 'matplotlib>=3.6', 'tqdm>=4.66'],
         # ROS 2 Jazzy as wheels, for machines without ROS (x86-64 Linux). Never install these
         # beside a ROS from apt.
         'ros': [
@@ -77,6 +88,7 @@ setup(
     zip_safe=False,  # the kernels' cache is keyed by their source files
     entry_points={
         'console_scripts': [
+            'hnr-planner = hnr_planner.cli.main:main',
             'map_node = hnr_planner.ros.node.map_node:main',
             'planner_node = hnr_planner.ros.node.planner_node:main',
         ],

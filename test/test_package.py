@@ -13,6 +13,7 @@ import sys
 from typing import Any
 import xml.etree.ElementTree as ElementTree
 
+from hnr_planner.cli.extras import EXTRAS
 import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -22,9 +23,9 @@ MODULES = {
     for path in PACKAGE.rglob('*.py')
 }
 
-# The rooms of the house, from the cellar up: a module imports from its own room and those below.
-# The first name that a module's name begins with is its room.
-ROOMS = (
+#: The layers, the lowest first: a module imports from its own layer and those below. The first
+#: name that a module's name begins with is its layer. CONTRIBUTING.md says what each one holds.
+LAYERS = (
     'hnr_planner.core.errors',
     'hnr_planner.core.cancellation',
     'hnr_planner.core.checks',
@@ -48,24 +49,25 @@ ROOMS = (
     'hnr_planner.cli',
     'hnr_planner.__main__',
 )
+#: The layers below ROS.
+BELOW_ROS = LAYERS[: LAYERS.index('hnr_planner.ros')]
+#: What a robot runs: only what these import is required of every installation.
+OF_A_ROBOT = tuple(f'hnr_planner.{name}' for name in ('core', 'maps', 'server', 'ros'))
 
-# What a library is called where it is asked for: on PyPI, and by rosdep.
+#: What a library is called on PyPI, and by rosdep.
 ON_PYPI = {'PIL': 'pillow', 'cv2': 'opencv-python-headless', 'yaml': 'pyyaml'}
 IN_ROSDEP = {
     'PIL': 'python3-pil',
     'cv2': 'python3-opencv',
-    'joblib': 'python3-joblib',
-    'matplotlib': 'python3-matplotlib',
     'numpy': 'python3-numpy',
     'scipy': 'python3-scipy',
     'shapely': 'python3-shapely',
-    'tqdm': 'python3-tqdm',
     'yaml': 'python3-yaml',
 }
-# rosdep has a key for numba, but Ubuntu 24.04 no package; it has neither for arviz. Tests in a
-# browser are skipped where selenium is missing.
+#: rosdep has a key for numba, but Ubuntu 24.04 no package; it has neither for arviz. Tests in a
+#: browser are skipped where selenium is missing.
 NOT_IN_ROSDEP = {'arviz', 'numba', 'selenium'}
-# What is imported by one function only, for those who have it.
+#: Imported by one function only, for those who have it.
 OPTIONAL = {'arviz'}
 
 
@@ -88,18 +90,33 @@ def source(module: str) -> Path:
     return path / '__init__.py' if path.is_dir() else path.with_suffix('.py')
 
 
-def room(module: str) -> int:
+def layer(module: str) -> int:
+    """Return the height of a module's layer; that of the package itself, which all may import."""
     if module == 'hnr_planner':
         return -1
-    for height, name in enumerate(ROOMS):
+    for height, name in enumerate(LAYERS):
         if module == name or module.startswith(f'{name}.'):
             return height
-    pytest.fail(f'{module} is in no room of the house: add its room to ROOMS')
+    pytest.fail(f'{module} is in no layer: add its layer to LAYERS')
 
 
 def libraries(*paths: Path) -> set[str]:
     roots = {name.partition('.')[0] for path in paths for name in imports(path)}
     return roots - set(sys.stdlib_module_names) - {'hnr_planner'}
+
+
+def is_in(module: str, layers: tuple[str, ...]) -> bool:
+    return any(module == layer or module.startswith(f'{layer}.') for layer in layers)
+
+
+def libraries_of(layers: tuple[str, ...]) -> set[str]:
+    """Return the libraries, those of ROS aside, that the modules of some layers import."""
+    found = libraries(*(source(module) for module in MODULES if is_in(module, layers)))
+    return {name for name in found if not is_ros(name)}
+
+
+def on_pypi(libraries: set[str]) -> set[str]:
+    return {ON_PYPI.get(name, name) for name in libraries}
 
 
 def names(requirements: list[str]) -> set[str]:
@@ -148,16 +165,34 @@ def test_both_manifests_agree(distribution: Any, manifest: ElementTree.Element) 
     assert metadata.maintainer_email == maintainer.get('email')
 
 
-def test_pip_requirements_are_the_libraries_imported(distribution: Any) -> None:
+def test_pip_requirements_are_what_a_robot_imports(distribution: Any) -> None:
     declared = names(distribution.install_requires)
-    of_ros = {name for name in libraries(*PACKAGE.glob('ros/**/*.py')) if is_ros(name)}
-    imported = libraries(*map(source, MODULES)) - of_ros - OPTIONAL
-    assert declared == {ON_PYPI.get(name, name) for name in imported}
+    assert declared == on_pypi(libraries_of(OF_A_ROBOT) - OPTIONAL)
 
 
-def test_rosdep_keys_are_the_libraries_imported(manifest: ElementTree.Element) -> None:
+@pytest.mark.parametrize(
+    ('extra', 'layers'),
+    [
+        ('plot', ('hnr_planner.drawing', 'hnr_planner.page', 'hnr_planner.demo')),
+        ('experiments', ('hnr_planner.drawing', 'hnr_planner.experiments')),
+    ],
+)
+def test_an_extra_is_what_its_layers_import_besides(
+    distribution: Any, extra: str, layers: tuple[str, ...]
+) -> None:
+    needed = libraries_of(layers) - libraries_of(OF_A_ROBOT)
+    assert names(distribution.extras_require[extra]) == on_pypi(needed)
+    assert set(EXTRAS[extra]) == needed
+
+
+def test_commands_themselves_need_no_extra() -> None:
+    assert libraries_of(('hnr_planner.cli', 'hnr_planner.__main__')) <= libraries_of(OF_A_ROBOT)
+
+
+def test_rosdep_keys_are_what_a_robot_imports(manifest: ElementTree.Element) -> None:
     declared = {element.text for element in manifest.iter('exec_depend')}
-    imported = libraries(*map(source, MODULES), *ROOT.glob('launch/*.py')) - NOT_IN_ROSDEP
+    robot = [source(module) for module in MODULES if is_in(module, OF_A_ROBOT)]
+    imported = libraries(*robot, *ROOT.glob('launch/*.py')) - NOT_IN_ROSDEP
     assert declared == {IN_ROSDEP.get(name, name) for name in imported}
 
 
@@ -168,16 +203,18 @@ def test_requirements_of_the_tests_are_what_they_import_besides(
     imported -= libraries(*map(source, MODULES)) - OPTIONAL
     imported -= {'benchmarks', 'distutils', 'test'}
     tools = {'colcon-common-extensions', 'pytest-xdist', 'setuptools'}
-    on_pypi = names(distribution.extras_require['test'])
-    in_rosdep = {element.text for element in manifest.iter('test_depend')}
-    assert on_pypi == imported | tools
-    assert in_rosdep == {f'python3-{name}' for name in imported - NOT_IN_ROSDEP}
+    declared = names(distribution.extras_require['test'])
+    assert declared == imported | tools
     assert set(distribution.extras_require) >= OPTIONAL
+    of_extras = {library for extra in EXTRAS.values() for library in extra}
+    keys = {f'python3-{name}' for name in (imported | of_extras) - NOT_IN_ROSDEP}
+    assert {element.text for element in manifest.iter('test_depend')} == keys
 
 
 def test_every_console_script_is_there(distribution: Any) -> None:
     scripts = distribution.entry_points['console_scripts']
-    assert {line.split(' = ')[0] for line in scripts} == {'map_node', 'planner_node'}
+    called = {line.split(' = ')[0] for line in scripts}
+    assert called == {'hnr-planner', 'map_node', 'planner_node'}
     for line in scripts:
         module, function = line.split(' = ')[1].split(':')
         tree = ast.parse(source(module).read_text())
@@ -204,11 +241,25 @@ def test_data_files_hold_what_ros_looks_for(distribution: Any) -> None:
 def test_imports_run_downwards() -> None:
     upwards = [
         f'{module} imports {name}'
-        for module in sorted(MODULES)
+        for module in sorted(MODULES - {'hnr_planner'})
         for name in imports(source(module))
-        if name.startswith('hnr_planner.') and room(name) > room(module)
+        if name.startswith('hnr_planner.') and layer(name) > layer(module)
     ]
     assert not upwards
+
+
+def test_the_package_itself_imports_the_core_only() -> None:
+    assert {name for name in imports(source('hnr_planner')) if 'hnr_planner' in name} == {
+        'hnr_planner.core'
+    }
+
+
+def test_contributing_has_the_same_layers() -> None:
+    text = (ROOT / 'CONTRIBUTING.md').read_text()
+    rows = re.findall(r'^\| (`.*?`) \|', text.partition('| layer |')[2], re.MULTILINE)
+    listed = [name for row in rows for name in re.findall('`(.*?)`', row)]
+    modules = [name.removesuffix('.py').rstrip('/').replace('/', '.') for name in listed]
+    assert [f'hnr_planner.{name}' for name in modules] == list(LAYERS[::-1])
 
 
 def test_maps_know_nothing_of_the_core_but_its_errors() -> None:
@@ -218,13 +269,16 @@ def test_maps_know_nothing_of_the_core_but_its_errors() -> None:
     }
 
 
-def test_only_ros_and_launch_files_name_ros() -> None:
-    for module in MODULES:
-        if room(module) < ROOMS.index('hnr_planner.ros'):
-            assert not [name for name in libraries(source(module)) if is_ros(name)], module
+@pytest.mark.parametrize('name', BELOW_ROS)
+def test_layers_below_ros_import_no_ros(name: str) -> None:
+    modules = [module for module in MODULES if LAYERS[layer(module)] == name]
+    assert modules
+    for module in modules:
+        assert not [library for library in libraries(source(module)) if is_ros(library)], module
 
 
-def test_core_runs_where_there_is_no_ros() -> None:
+@pytest.mark.parametrize('part', ['core', 'maps', 'server'])
+def test_it_runs_where_there_is_no_ros(part: str) -> None:
     program = f"""
 import importlib, sys
 sys.path.insert(0, {str(ROOT)!r})
@@ -243,12 +297,12 @@ for name in ('rclpy', 'nav_msgs.msg'):
         continue
     sys.exit(f'{{name}} could be imported: this program proves nothing')
 
-for name in {sorted(name for name in MODULES if name.startswith('hnr_planner.core'))!r}:
+for name in {sorted(name for name in MODULES if name.startswith(f'hnr_planner.{part}'))!r}:
     importlib.import_module(name)
 
-from hnr_planner.core import GridSpace, plan
+from hnr_planner import GridSpace, plan
 space = GridSpace.from_blocked([[False, False], [False, False]])
-print(plan(space, (0.5, 0.5), (1.5, 1.5), seed=1, time_limit=60.0).status.name)
+print(plan(space, (0.5, 0.5), (1.5, 1.5), seed=1, time_limit=float('inf')).status.name)
 """
     done = run([sys.executable, '-c', program])
     assert done.stdout.split() == ['SOLVED']
@@ -319,8 +373,13 @@ def test_colcon_installs_all_of_it(
     where, *files = done.stdout.splitlines()
     assert Path(where).is_relative_to(workspace)
     assert set(files) == {path.relative_to(ROOT).as_posix() for path in PACKAGE.rglob('*.py')}
-    page, installed_page = (
-        {path.name for path in folder.glob('*.[!p]*')}
-        for folder in (PACKAGE / 'page', Path(where, 'page'))
+    other, installed_other = (
+        {
+            path.relative_to(root)
+            for path in root.rglob('*.*')
+            if path.suffix not in ('.py', '.pyc')
+        }
+        for root in (PACKAGE, Path(where))
     )
-    assert {'page.html', 'page.css', 'page.js'} <= page == installed_page
+    assert {Path('py.typed'), Path('__init__.pyi'), Path('page/page.html')} <= other
+    assert other == installed_other

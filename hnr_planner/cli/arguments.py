@@ -1,19 +1,20 @@
 """
-What the commands have in common: arguments with a type and a unit, and one line for an error.
+Arguments that several commands share, their types, and errors of one line.
 
-Importing this is cheap; the map and the planner are imported when a map is opened.
+Importing this module is cheap; the map and the planner are imported when a map is opened.
 """
 
 from __future__ import annotations
 
 import argparse
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Sequence
+from itertools import takewhile
 import math
 from pathlib import Path
 import re
 import sys
 import threading
-from typing import NoReturn, TYPE_CHECKING, TypeVar
+from typing import Any, NoReturn, Protocol, TYPE_CHECKING, TypeVar
 
 if TYPE_CHECKING:
     from hnr_planner.core import GridSpace
@@ -21,33 +22,131 @@ if TYPE_CHECKING:
 
 Number = TypeVar('Number', int, float)
 
+#: Exit code for bad input.
 BAD_INPUT = 2
+#: File name endings of pages and of pictures.
 PAGES = ('.html', '.htm')
 PICTURES = ('.png', '.svg', '.pdf')
+#: Names of number types, for messages.
 KINDS = {float: 'number', int: 'whole number'}
+#: Time that loading the kernels may take before a note explains the wait [s].
 PATIENCE = 2.0
-"""How long the kernels may take to load before we say what we wait for [s]."""
+
+
+class Listed(Protocol):
+    """An entry of a registry."""
+
+    @property
+    def name(self) -> str:
+        """Return the name that the command line takes."""
+
+    @property
+    def summary(self) -> str:
+        """Return one line about it."""
 
 
 class BadInputError(ValueError):
-    """An argument is well-formed but cannot be used; the message names it, and why."""
+    """An argument is well-formed but cannot be used; the message names it and the reason."""
 
 
 class CommandParser(argparse.ArgumentParser):
     """An argument parser that reports an error in one line and keeps the layout of its epilog."""
 
     def __init__(self, **settings: object) -> None:
-        """Take what argparse takes."""
+        """Take what ``argparse.ArgumentParser`` takes."""
         settings.setdefault('formatter_class', argparse.RawDescriptionHelpFormatter)
         settings['allow_abbrev'] = False
         super().__init__(**settings)  # type: ignore[arg-type]
         # argparse takes -1e-3, which Python itself prints, for an option.
         self._negative_number_matcher = re.compile(r'^-(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?$|^-inf$')
+        self._points: list[str] = []
+
+    def add_point(self, option: str, *, required: bool = False, text: str) -> None:
+        """Add an option that takes a point X Y [m], with its text in ``--help``."""
+        self._points.append(option)
+        self.add_argument(
+            option, type=number, nargs=2, metavar=('X', 'Y'), required=required, help=text
+        )
+
+    def parse_known_args(  # type: ignore[override]
+        self, args: Sequence[str] | None = None, namespace: Any = None
+    ) -> tuple[Any, list[str]]:
+        """Check the points before argparse does, whose message for them has no example."""
+        words = sys.argv[1:] if args is None else list(args)
+        for place, word in enumerate(words, start=1):
+            option, equals, first = word.partition('=')
+            if option in self._points:
+                self._check_point(option, [*([first] if equals else []), *words[place:]])
+        return super().parse_known_args(words, namespace)
+
+    def _check_point(self, option: str, words: Sequence[str]) -> None:
+        """Report an option that is followed by other than two separate numbers."""
+        given = list(takewhile(_numbers_in, words))
+        if not given:
+            return  # argparse names the word that is no number
+        count = len(given)
+        follower = words[count] if count < len(words) else '--'
+        numbers = [number for word in given for number in _numbers_in(word)]
+        too_few = count == 1 and follower.startswith('--')
+        if numbers != given or count > 2 or too_few:
+            example = ' '.join((*numbers, '0.5')[:2])
+            self.error(
+                f'argument {option}: takes two numbers, X and Y, such as {option} {example}; '
+                f'not {" ".join(given)}'
+            )
 
     def error(self, message: str) -> NoReturn:
         """Print one line and end with exit code 2."""
         print(error_line(f'{message} (see {self.prog} --help)'), file=sys.stderr)
         raise SystemExit(BAD_INPUT)
+
+
+def _numbers_in(word: str) -> list[str]:
+    """Return the numbers of a word such as ``.5,.5``; empty when it holds anything else."""
+    parts = [part for part in re.split(r'[,;()\[\]\s]+', word) if part]
+    try:
+        return parts if [float(part) for part in parts] else []
+    except ValueError:
+        return []
+
+
+def add_command(
+    commands: argparse._SubParsersAction,
+    name: str,
+    run: Callable[[argparse.Namespace], int],
+    *,
+    summary: str,
+    description: str,
+    epilog: str,
+) -> CommandParser:
+    """
+    Add a command to the command line, and return its parser.
+
+    Parameters
+    ----------
+    commands
+        The subparsers of the command line.
+    name : str
+        Name of the command.
+    run : callable
+        Runs it, given the parsed arguments, and returns the exit code.
+    summary, description, epilog : str
+        A line for the list of commands; first and last part of the command's own help.
+
+    """
+    parser: CommandParser = commands.add_parser(
+        name, help=summary, description=description, epilog=epilog
+    )
+    parser.set_defaults(run=run)
+    return parser
+
+
+def listing(entries: Iterable[Listed]) -> str:
+    """Return names and summaries as lines of a help text."""
+    entries = list(entries)
+    width = max(len(entry.name) for entry in entries)
+    lines = (f'  {entry.name:<{width}}  {entry.summary}' for entry in entries)
+    return '\n'.join(lines).replace('%', '%%')
 
 
 def error_line(message: str) -> str:
@@ -62,7 +161,7 @@ def bounded(
     above: float = -math.inf,
     most: float = math.inf,
 ) -> Callable[[str], Number]:
-    """Return what reads a finite number of a kind, and within bounds, for argparse."""
+    """Return a function that reads a finite number within bounds, for argparse."""
 
     def read(text: str) -> Number:
         try:
@@ -90,7 +189,7 @@ count = bounded(int, least=1, most=10**9)
 
 
 def picture(text: str) -> Path:
-    """Return the path of a picture that can be written, for argparse."""
+    """Return the path of a picture in an existing folder, for argparse."""
     file = output_file(text)
     if file.suffix.lower() not in PICTURES:
         raise argparse.ArgumentTypeError(f'{text!r} does not end in one of {", ".join(PICTURES)}')
@@ -98,7 +197,7 @@ def picture(text: str) -> Path:
 
 
 def page(text: str) -> Path:
-    """Return the path of a page that can be written, for argparse."""
+    """Return the path of an HTML page in an existing folder, for argparse."""
     file = output_file(text)
     if file.suffix.lower() not in PAGES:
         raise argparse.ArgumentTypeError(f'{text!r} does not end in one of {", ".join(PAGES)}')
@@ -106,7 +205,7 @@ def page(text: str) -> Path:
 
 
 def output_file(text: str) -> Path:
-    """Return the path of a file whose folder is there, for argparse."""
+    """Return the path of a file in an existing folder, for argparse."""
     file = Path(text)
     if not file.parent.is_dir():
         raise argparse.ArgumentTypeError(f'there is no folder {str(file.parent)!r}')
@@ -116,29 +215,30 @@ def output_file(text: str) -> Path:
 
 
 def add_map_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the map and how it becomes a space."""
+    """Add the map, the robot's radius and the meaning of unknown cells."""
     parser.add_argument(
         'map',
         metavar='MAP',
-        help='the YAML file of a map_server map, or a .map file of the Moving AI benchmarks',
+        help='the YAML file of a map_server map, or a .map file of the Moving AI benchmarks '
+        '(ground and swamp are free; water, trees and all else are blocked)',
     )
     parser.add_argument(
         '--robot-radius',
         type=length,
         default=0.0,
         metavar='R',
-        help='the robot is a circle of this radius [m]; default 0, a point',
+        help='radius of the robot, which is a circle [m]; default 0, a point',
     )
     parser.add_argument(
         '--unknown',
         choices=('blocked', 'free'),
         default='blocked',
-        help='what cells are of which the map knows nothing; default blocked',
+        help='whether unknown cells are blocked or free; default blocked',
     )
 
 
 def open_map(arguments: argparse.Namespace) -> tuple[OccupancyMap, GridSpace]:
-    """Return the map that the arguments name and the space of a robot on it."""
+    """Return the map that the arguments name, and the free space of the robot on it."""
     from hnr_planner.core import GridSpace
     from hnr_planner.maps import load_map
 
@@ -155,7 +255,7 @@ def open_map(arguments: argparse.Namespace) -> tuple[OccupancyMap, GridSpace]:
 
 def keep_map_files(map_file: str | Path, *outputs: Path | None) -> None:
     """
-    Refuse to write over a file of the map: ``office.yaml`` mostly has its image in ``office.png``.
+    Refuse to overwrite a file of the map: the image of ``office.yaml`` is often ``office.png``.
 
     Raises
     ------
@@ -163,10 +263,11 @@ def keep_map_files(map_file: str | Path, *outputs: Path | None) -> None:
         When an output is the map file or its image.
 
     """
+    from hnr_planner.maps import is_moving_ai
     from hnr_planner.maps.map_server import read_header
 
     inputs = [Path(map_file)]
-    if inputs[0].suffix.lower() != '.map':
+    if not is_moving_ai(map_file):
         inputs.append(read_header(inputs[0]).image)
     for output in filter(None, outputs):
         for file in inputs:
@@ -175,10 +276,10 @@ def keep_map_files(map_file: str | Path, *outputs: Path | None) -> None:
 
 
 def compile_kernels(use: str) -> None:
-    """Have the kernels for a use ready before anything is timed; say so when that takes long."""
+    """Load or compile the kernels for a use before anything is timed; explain a long wait."""
     from hnr_planner.core import warm_up
 
-    note = 'loading compiled code; the first time it is compiled, a minute or two ...'
+    note = 'loading compiled code; the first time it is compiled, which takes minutes ...'
     timer = threading.Timer(PATIENCE, print, [note], {'file': sys.stderr, 'flush': True})
     timer.daemon = True
     timer.start()

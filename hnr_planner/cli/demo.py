@@ -1,4 +1,4 @@
-"""The command ``demo``: real ROS nodes plan on a real map, and a picture shows it."""
+"""The command ``demo``: real ROS nodes plan on a map, and a picture shows the result."""
 
 from __future__ import annotations
 
@@ -6,42 +6,45 @@ import argparse
 from importlib.util import find_spec
 from pathlib import Path
 
-from hnr_planner.cli.arguments import BadInputError, keep_map_files, picture
+from hnr_planner.cli.arguments import add_command, BadInputError, keep_map_files, picture
+from hnr_planner.cli.extras import require_extra
 
 EPILOG = """\
-The demo starts a map source and the planning node as processes of their own, asks for a path by
-Hit-and-Run and for one by RRT, receives paths and samples in one more process, checks the paths
-against the map file, prints a table and draws the picture. It speaks DDS inside this machine only,
-in a ROS domain of its own, and leaves no process behind.
+The demo starts a map source and the planning node as separate processes, requests a path by
+Hit-and-Run and one by RRT, receives paths and samples in a third process, checks the paths against
+the map file, prints a table and draws the picture. It uses DDS inside this machine only, in a ROS
+domain of its own, and leaves no process behind.
 
 examples:
-  python -m hnr_planner demo
-  python -m hnr_planner demo --map warehouse.yaml --out picture.png
-  python -m hnr_planner demo --keep
+  %(prog)s
+  %(prog)s --map warehouse.yaml --out picture.png
+  %(prog)s --keep
 
-Exit code 0: all went well. 1: a plan failed, a check failed or a process died. 2: the map is not
-usable, or ROS 2 is not there.
+Exit code 0: every request and check succeeded. 1: a request or a check failed, or a process died.
+2: the map is not usable, or ROS 2 or matplotlib is not installed.
 """
 
 
 def add_parser(commands: argparse._SubParsersAction) -> None:
-    """Add the command to the command line."""
-    parser = commands.add_parser(
+    """Add the command ``demo`` to the command line."""
+    parser = add_command(
+        commands,
         'demo',
-        help='plan with real ROS nodes and draw what they did',
+        run,
+        summary='plan with real ROS nodes and draw the result',
         description='Plan with real ROS 2 nodes, check the paths and draw them.',
         epilog=EPILOG,
     )
     parser.add_argument(
         '--map',
         metavar='FILE',
-        help='a map of your own, .yaml or .map: start and goal are chosen far apart in it; '
-        'default the office that comes with the package',
+        help='another map, .yaml or .map; start and goal are chosen far apart in it; '
+        'default the office map of the package',
     )
     parser.add_argument(
         '--keep',
         action='store_true',
-        help='leave the nodes running until Ctrl-C, and print calls to try',
+        help='leave the nodes running until Ctrl-C, and print example calls',
     )
     parser.add_argument(
         '--out',
@@ -50,7 +53,6 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
         metavar='FILE.png',
         help='the picture; default demo.png',
     )
-    parser.set_defaults(run=run)
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -59,6 +61,7 @@ def run(arguments: argparse.Namespace) -> int:
         raise BadInputError(
             'the demo needs ROS 2 (rclpy): source a ROS 2 Jazzy, or `make install` in a clone'
         )
+    require_extra('plot', 'the demo')
     from hnr_planner.demo.run import run_demo
     from hnr_planner.demo.scene import office_file
 

@@ -1,4 +1,4 @@
-"""The command ``experiment``: measure the paper's claims again."""
+"""The command ``experiment``: repeat the paper's experiments."""
 
 from __future__ import annotations
 
@@ -7,29 +7,32 @@ from pathlib import Path
 import sys
 import webbrowser
 
-from hnr_planner.cli.arguments import count
+from hnr_planner.cli.arguments import add_command, count
+from hnr_planner.cli.extras import require_extra
 
-#: Those of the experiments, here so that --help is fast.
+#: Names of the experiments; literal, so that ``--help`` imports none of them. A test compares.
 NAMES = ('spiral', 'clouds', 'corridor', 'safety', 'mixing', 'theory')
 EPILOG = """\
-Rows are kept as they come: a run that was broken off goes on where it was, and a longer one
-continues a shorter one. A tenth of the runs of docs/ is good for a look. Where HNR_MAPS names a
-folder, its map_server maps take part in safety.
+Rows are saved as they are measured: an interrupted run resumes, and a longer run continues a
+shorter one. A tenth of the runs of docs/ is enough for a first look. When HNR_MAPS names a folder,
+the experiment safety includes its map_server maps.
 
 examples:
-  python -m hnr_planner experiment spiral --runs 50 --show
-  python -m hnr_planner experiment --out figures
+  %(prog)s spiral --runs 50 --show
+  %(prog)s --out figures
 
-Exit code 0: done. 2: the arguments are not usable, or the folder holds results of something else.
+Exit code 0: done. 2: the arguments are not usable, or the folder holds results of other sources.
 """
 
 
 def add_parser(commands: argparse._SubParsersAction) -> None:
-    """Add the command to the command line."""
-    parser = commands.add_parser(
+    """Add the command ``experiment`` to the command line."""
+    parser = add_command(
+        commands,
         'experiment',
-        help="measure the paper's claims again and draw them",
-        description='Run experiments: NAME.csv, NAME.svg and NAME.md (the numbers) in a folder.',
+        run,
+        summary="measure the paper's claims and draw figures",
+        description='Run experiments: NAME.csv, NAME.svg and NAME.md (tables) in a folder.',
         epilog=EPILOG,
     )
     parser.add_argument(
@@ -42,29 +45,29 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
         '--runs',
         type=count,
         metavar='N',
-        help='runs of each case, with the seeds 0 to N - 1; default those of docs/',
+        help='runs of each case, with the seeds 0 to N - 1; default as in docs/',
     )
     parser.add_argument(
         '--out',
         type=Path,
         default=Path('experiments'),
         metavar='DIR',
-        help='the folder, made if it is not there; default experiments',
+        help='the output folder, created if it does not exist; default experiments',
     )
     parser.add_argument(
-        '--jobs', type=count, metavar='N', help='runs at the same time; default one on each core'
+        '--jobs', type=count, metavar='N', help='parallel runs; default one for each core'
     )
     parser.add_argument(
         '--fresh',
         action='store_true',
-        help='throw away the rows of before, as after a change of the experiment itself',
+        help='discard the rows saved before, as after a change of the experiment itself',
     )
-    parser.add_argument('--show', action='store_true', help='open the figure when it is done')
-    parser.set_defaults(run=run)
+    parser.add_argument('--show', action='store_true', help='open the figure in a browser')
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Conduct the experiments, print their numbers, and return the exit code."""
+    """Run the experiments, print their tables, and return the exit code."""
+    require_extra('experiments', 'an experiment')
     for name in arguments.names or NAMES:
         _conduct(name, arguments)
     return 0
@@ -83,4 +86,4 @@ def _conduct(name: str, arguments: argparse.Namespace) -> None:
     print(figure.with_suffix('.md').read_text(encoding='utf-8'))
     print(f'figure      {figure}')
     if arguments.show and not webbrowser.open(figure.resolve().as_uri()):
-        print('there is no browser to show it in', file=sys.stderr)
+        print('no browser was found to show it', file=sys.stderr)

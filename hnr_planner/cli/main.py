@@ -1,30 +1,36 @@
 """
-The command line ``python -m hnr_planner``.
+The command line ``hnr-planner``, also ``python -m hnr_planner``.
 
-Each command is a module with ``add_parser``, which says what the command takes, and ``run``,
-which does it and returns the exit code. They import what is heavy only when they run.
+Each command is a module with ``add_parser``, which declares its arguments, and ``run``, which
+runs it and returns the exit code. Large libraries are imported only by ``run``.
 """
 
 from __future__ import annotations
 
 from argparse import Namespace
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 import os
+from pathlib import Path
 import sys
+from typing import Any
+import warnings
 
 from hnr_planner import __version__
 from hnr_planner.cli import demo, experiment, plan, sample
 from hnr_planner.cli.arguments import BAD_INPUT, BadInputError, CommandParser, error_line
+from hnr_planner.core.errors import HnrError
 
 DESCRIPTION = 'Plan paths and draw uniform samples on occupancy maps.'
 EPILOG = """\
 A MAP is the YAML file of a map_server map, or a .map file of the Moving AI benchmarks.
 
 examples:
-  python -m hnr_planner demo
-  python -m hnr_planner plan office.yaml --start 2 3 --goal 30 20 --plot plan.png
-  python -m hnr_planner sample office.yaml --n 1000 --csv points.csv
+  %(prog)s demo
+  %(prog)s plan office.yaml --start 2 3 --goal 30 20 --plot plan.png
+  %(prog)s sample office.yaml --n 1000 --csv points.csv
 """
+#: Exit code after Ctrl-C.
 INTERRUPTED = 130
 
 
@@ -35,22 +41,22 @@ def main(argv: Sequence[str] | None = None) -> int:
     Parameters
     ----------
     argv : sequence of str, optional
-        The arguments, those of the process when left out.
+        The arguments; those of the process by default.
 
     Returns
     -------
     int
-        0 when all went well, 1 when there is no path (or a check of the demo failed), 2 for bad
-        input, which one line on stderr explains, 130 when interrupted.
+        0 for success, 1 when there is no path (or a check of the demo failed), 2 for bad input,
+        which one line on stderr explains, 130 when interrupted.
 
     """
     try:
         arguments = build_parser().parse_args(argv)
-    except SystemExit as stop:  # --help, or what argparse found wrong
+    except SystemExit as stop:  # --help, or an error that argparse reported
         return int(stop.code or 0)
     try:
         return _run(arguments)
-    except BrokenPipeError:  # the reader, such as `head`, has had enough
+    except BrokenPipeError:  # the reader, such as `head`, has ended
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 0
     except KeyboardInterrupt:
@@ -58,11 +64,10 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def _run(arguments: Namespace) -> int:
-    """Run the command; bad input becomes one line and its exit code."""
-    from hnr_planner.core.errors import HnrError  # heavy, and --help should be fast
-
+    """Run the command; turn bad input into one line on stderr and its exit code."""
     try:
-        code: int = arguments.run(arguments)
+        with _warnings_as_lines():
+            code: int = arguments.run(arguments)
         sys.stdout.flush()
         return code
     except BrokenPipeError:
@@ -75,9 +80,36 @@ def _run(arguments: Namespace) -> int:
     return BAD_INPUT
 
 
+@contextmanager
+def _warnings_as_lines() -> Iterator[None]:
+    """Print each warning about a map file as one line on stderr, without a line of source."""
+    from hnr_planner.maps import MapFileWarning  # imports numpy, which --help does without
+
+    with warnings.catch_warnings():
+        warnings.simplefilter('always', MapFileWarning)
+        show = warnings.showwarning
+
+        def show_in_one_line(
+            message: Warning | str, category: type[Warning], *where: Any, **more: Any
+        ) -> None:
+            if issubclass(category, MapFileWarning):
+                print(f'warning: {message}', file=sys.stderr)
+            else:
+                show(message, category, *where, **more)
+
+        warnings.showwarning = show_in_one_line
+        yield
+
+
+def _program() -> str:
+    """Return the command as it was called: ``hnr-planner`` or ``python -m hnr_planner``."""
+    called = Path(sys.argv[0]).name
+    return called if called == 'hnr-planner' else 'python -m hnr_planner'
+
+
 def build_parser() -> CommandParser:
     """Return the parser of the whole command line."""
-    parser = CommandParser(prog='python -m hnr_planner', description=DESCRIPTION, epilog=EPILOG)
+    parser = CommandParser(prog=_program(), description=DESCRIPTION, epilog=EPILOG)
     parser.add_argument('--version', action='version', version=f'hnr_planner {__version__}')
     commands = parser.add_subparsers(title='commands', metavar='COMMAND', required=True)
     for command in (plan, sample, demo, experiment):

@@ -8,103 +8,102 @@ import math
 from typing import Any, TYPE_CHECKING
 
 from hnr_planner.cli.arguments import (
+    add_command,
     add_map_arguments,
     compile_kernels,
     count,
     keep_map_files,
     length,
-    number,
+    listing,
     open_map,
     page,
     picture,
     positive,
     whole,
 )
+from hnr_planner.cli.extras import require_extra
+from hnr_planner.core.planning.registry import ALGORITHMS, PLANNERS
 
 if TYPE_CHECKING:
     from hnr_planner.core import GridSpace, PlanResult
     from hnr_planner.maps import OccupancyMap
 
-ALGORITHM_NAMES = (
-    'auto',
-    'hit_and_run',
-    'rrt',
-    'hit_and_run_connect',
-    'rrt_connect',
-)  # those of the core, here so that --help is fast
+#: Default of ``--optimize-for`` [s].
+OPTIMIZE_FOR = 0.02
+#: Exit code when no path was found.
 NO_PATH = 1
 EPILOG = """\
 example:
-  python -m hnr_planner plan office.yaml --start 2 3 --goal 30 20 --robot-radius 0.22 \\
-      --plot plan.png
+  %(prog)s office.yaml --start 2 3 --goal 30 20 --robot-radius 0.22 --plot plan.png
 
-Exit code 0: a path was found. 1: none, and the status says why: INVALID_START, INVALID_GOAL,
-UNREACHABLE (proved) or TIMEOUT. 2: the arguments or the map are not usable.
-The same seed gives the same path, unless a clock cut the search.
+algorithms:
+{algorithms}
+
+Exit code 0: a path was found. 1: no path was found; the status names the reason: INVALID_START,
+INVALID_GOAL, UNREACHABLE (proved) or TIMEOUT. 2: the arguments or the map are not usable.
+The same seed gives the same path, unless a time limit cut the search.
 """
 
 
 def add_parser(commands: argparse._SubParsersAction) -> None:
-    """Add the command to the command line."""
-    parser = commands.add_parser(
+    """Add the command ``plan`` to the command line."""
+    parser = add_command(
+        commands,
         'plan',
-        help='find a path between two points of a map',
+        run,
+        summary='find a path between two points of a map',
         description='Find a path between two points of a map, clear of obstacles for the robot.',
-        epilog=EPILOG,
+        epilog=EPILOG.format(algorithms=listing(PLANNERS)),
     )
     add_map_arguments(parser)
     for name in ('start', 'goal'):
-        parser.add_argument(
-            f'--{name}',
-            type=number,
-            nargs=2,
-            metavar=('X', 'Y'),
-            required=True,
-            help=f'the {name} in the frame of the map [m]',
-        )
+        parser.add_point(f'--{name}', required=True, text=f'the {name} in the map frame [m]')
     parser.add_argument(
         '--algorithm',
-        choices=ALGORITHM_NAMES,
+        choices=ALGORITHMS,
         default='auto',
-        help='how to search; default auto, the best there is for a map',
+        metavar='A',
+        help='the planner, one of those below; default auto',
     )
     parser.add_argument(
         '--goal-radius',
         type=length,
         default=0.0,
         metavar='R',
-        help='a point this near to the goal will do [m]; default 0, exactly there',
+        help='radius of the goal region [m]: a path may end anywhere in it; default 0, exactly at '
+        'the goal',
     )
     parser.add_argument(
         '--time-limit',
         type=positive,
         default=1.0,
         metavar='S',
-        help='the longest that all of it may take [s]; default 1',
+        help='time limit of planning [s]: search, simplification and --optimize-for together, '
+        'but not reading the map, preparing the space, compiling, --plot and --html; default 1',
     )
     parser.add_argument(
         '--optimize-for',
         type=length,
-        default=0.0,
         metavar='S',
-        help='look for a shorter path until so long [s] after the call, ending with the time '
-        'limit; default 0',
+        help='keep looking for a shorter path until this long after the start of planning [s], '
+        f'within the time limit; 0 for the first path; default {OPTIMIZE_FOR:g}, with '
+        '--no-simplify 0',
     )
     parser.add_argument(
         '--clearance',
         type=length,
         default=0.0,
         metavar='R',
-        help='keep this far from obstacles where there is room [m], and pass narrow places in '
-        'their middle; default 0, the shortest path',
+        help='keep this distance from obstacles where the free space is wide enough [m], and pass '
+        'narrow places in their middle; default 0, the shortest path',
     )
     parser.add_argument(
         '--alternatives',
         type=count,
         default=1,
         metavar='K',
-        help='look for up to this many paths that pass obstacles on different sides, the '
-        'shortest first; default 1',
+        help='find up to this many paths that pass obstacles on different sides, the shortest '
+        'first; default 1',
     )
     parser.add_argument(
         '--seed', type=whole, metavar='N', help='seed of the random numbers; default a fresh one'
@@ -113,7 +112,23 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
         '--no-simplify',
         dest='simplify',
         action='store_false',
-        help='leave the path as the search found it, with all its detours',
+        help='return the path as the search found it, with all its detours',
+    )
+    parser.add_argument(
+        '--goal-tolerance',
+        type=length,
+        default=0.0,
+        metavar='R',
+        help='where the goal is blocked or unreachable, end at the nearest reachable point within '
+        'this distance [m]; default 0',
+    )
+    parser.add_argument(
+        '--start-escape',
+        type=length,
+        default=0.0,
+        metavar='R',
+        help='where the start lies within the radius of the robot from an obstacle, begin with a '
+        'straight way out of at most this length [m]; default 0',
     )
     parser.add_argument('--json', action='store_true', help='print the result as a JSON object')
     parser.add_argument(
@@ -123,16 +138,18 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
         '--html',
         type=page,
         metavar='FILE.html',
-        help='write a page that shows how this search unfolds, and that of every other algorithm '
-        'for the same request',
+        help='write an HTML page that shows how this search unfolds, and how every other '
+        'algorithm searches for the same request',
     )
-    parser.set_defaults(run=run)
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Plan, print the result, draw it if asked, and return the exit code."""
     from hnr_planner.core import plan, PlannerStatus
 
+    for option, file in (('--plot', arguments.plot), ('--html', arguments.html)):
+        if file:
+            require_extra('plot', option)
     occupancy, space = open_map(arguments)
     keep_map_files(arguments.map, arguments.plot, arguments.html)
     compile_kernels('paths')
@@ -153,8 +170,8 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _request(arguments: argparse.Namespace) -> dict[str, Any]:
-    """Return what ``plan`` takes besides the space."""
-    request = {
+    """Return the arguments of the function ``plan`` other than the space."""
+    return {
         'start': arguments.start,
         'goal': arguments.goal,
         'algorithm': arguments.algorithm,
@@ -162,14 +179,23 @@ def _request(arguments: argparse.Namespace) -> dict[str, Any]:
         'time_limit': arguments.time_limit,
         'seed': arguments.seed,
         'simplify': arguments.simplify,
-        'optimize_for': arguments.optimize_for,
+        'optimize_for': optimize_for(arguments),
         'alternatives': arguments.alternatives,
+        'clearance': arguments.clearance,
+        'goal_tolerance': arguments.goal_tolerance,
+        'start_escape': arguments.start_escape,
     }
-    return request | ({'clearance': arguments.clearance} if arguments.clearance else {})
+
+
+def optimize_for(arguments: argparse.Namespace) -> float:
+    """Return how long to look for a shorter path [s]; by default none with ``--no-simplify``."""
+    if arguments.optimize_for is not None:
+        return float(arguments.optimize_for)
+    return OPTIMIZE_FOR if arguments.simplify else 0.0
 
 
 def _json(result: PlanResult) -> str:
-    """Return the result as one JSON object; without a path its length is null."""
+    """Return the result as one JSON object; the length is null without a path."""
     return json.dumps(
         {
             'status': result.status.name,
@@ -181,12 +207,14 @@ def _json(result: PlanResult) -> str:
             'length': result.length if math.isfinite(result.length) else None,
             'path': result.path.tolist(),
             'paths': [path.tolist() for path in result.paths],
+            'goal_offset': result.goal_offset,
+            'escape': result.escape,
         }
     )
 
 
 def _summary(space: GridSpace, result: PlanResult) -> str:
-    """Return the result for a person."""
+    """Return the result as lines to read."""
     lines = [
         f'{result.status.name}: {result.message}',
         f'search      {result.planner}, {result.iterations:,} transitions, '
@@ -203,7 +231,7 @@ def _summary(space: GridSpace, result: PlanResult) -> str:
 
 
 def _points(path: list[list[float]], most: int = 8) -> list[str]:
-    """Return the points of a path in words, those in the middle left out when there are many."""
+    """Return the points of a path as text, at most ``most`` of them, from both ends."""
     words = [f'({x:.2f}, {y:.2f})' for x, y in path]
     if len(words) <= most:
         return words
@@ -214,7 +242,7 @@ def _points(path: list[list[float]], most: int = 8) -> list[str]:
 def _draw(
     arguments: argparse.Namespace, occupancy: OccupancyMap, space: GridSpace, result: PlanResult
 ) -> None:
-    """Write the picture."""
+    """Draw map, samples and paths into the picture."""
     from hnr_planner import drawing
 
     title = f'{result.planner}: {result.status.name}, {result.iterations:,} transitions'

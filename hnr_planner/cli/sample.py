@@ -9,50 +9,54 @@ import sys
 from typing import TextIO, TYPE_CHECKING
 
 from hnr_planner.cli.arguments import (
+    add_command,
     add_map_arguments,
     BadInputError,
     compile_kernels,
     count,
     keep_map_files,
-    number,
     open_map,
     output_file,
     picture,
     positive,
     whole,
 )
+from hnr_planner.cli.extras import require_extra
 
 if TYPE_CHECKING:
     from hnr_planner.core import GridSpace
     from numpy.typing import NDArray
 
-# Those of the core; see plan.py.
+#: Names of the walks; literal, so that ``--help`` does not import the core. A test compares.
 WALK_NAMES = ('hit_and_run', 'coordinate_hit_and_run', 'ball_walk')
 EPILOG = """\
 example:
-  python -m hnr_planner sample office.yaml --n 1000 --csv points.csv --plot points.png
+  %(prog)s office.yaml --n 1000 --csv points.csv --plot points.png
 
-The points are those of a random walk. Left to itself, it draws from all of the free space, and
-every point is uniform there. No walk leads from one connected part to another, so there is one in
-each, which starts at a uniform point of it; at every point the walk of one part moves on, picked
-with the probability of its share of the area. With --start there is a walk in the part in which
-the start lies, and the first points are still near the start.
+The points are the states of a random walk. Without --start they cover all of the free space, and
+every point is uniform there: a walk never passes from one connected part to another, so each part
+has a walk of its own, which starts at a uniform point of it, and every point is drawn from the
+walk of a part chosen with probability proportional to its area. With --start there is one walk, in
+the part that contains the start, and its first points are still near the start.
 
-Points of one walk depend on each other. --thin K lets the walk take K steps for each point: the
-points depend less on each other. --chains K draws N points K times, independently; the list then
-has a third column, the number of the chain from 0. The same seed gives the same points.
+Points of one walk are correlated. --thin K takes K steps of the walk for each point, which lowers
+the correlation. --chains K draws N points K times, independently; the list then has a third
+column, the number of the chain from 0. The same seed gives the same points.
 
---diagnose says on one line of stderr what the points are worth: how far the chains agree (R-hat)
-and how many independent points they are as good as, or why they should not be taken for uniform.
-One chain alone cannot show that: take four, and a larger --thin or --n until the line says so.
+--diagnose prints one line to stderr: how far the chains agree (R-hat) and the number of
+independent points that they are worth (effective sample size), or why they should not be taken for
+uniform. It needs several chains: use four, and increase --thin or --n until the line reports
+convergence.
 """
 
 
 def add_parser(commands: argparse._SubParsersAction) -> None:
-    """Add the command to the command line."""
-    parser = commands.add_parser(
+    """Add the command ``sample`` to the command line."""
+    parser = add_command(
+        commands,
         'sample',
-        help='draw uniform points of the free part of a map',
+        run,
+        summary='draw uniform points of the free part of a map',
         description='Draw uniform points of the free part of a map, by a random walk.',
         epilog=EPILOG,
     )
@@ -68,46 +72,44 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
         '--radius',
         type=positive,
         metavar='R',
-        help='longest step of ball_walk [m]; default what suits the map',
+        help='longest step of ball_walk [m]; default chosen from the size of the map',
     )
     parser.add_argument(
         '--thin',
         type=count,
         default=1,
         metavar='K',
-        help='keep every K-th point of the walk and drop those between; default 1, every point',
+        help='keep every K-th point of the walk; default 1, every point',
     )
     parser.add_argument(
         '--chains',
         type=count,
         default=1,
         metavar='K',
-        help='draw N points so many times, independently of each other; default 1',
+        help='number of independent chains of N points; default 1',
     )
-    parser.add_argument(
-        '--start',
-        type=number,
-        nargs=2,
-        metavar=('X', 'Y'),
-        help='where every chain starts [m]; default anywhere in the free space',
-    )
+    parser.add_point('--start', text='start of every chain [m]; default uniform in the free space')
     parser.add_argument(
         '--seed', type=whole, metavar='N', help='seed of the random numbers; default a fresh one'
     )
     parser.add_argument(
-        '--diagnose', action='store_true', help='say on stderr what the points are worth'
+        '--diagnose',
+        action='store_true',
+        help='print convergence and effective sample size to stderr',
     )
     parser.add_argument(
         '--csv',
         type=output_file,
         metavar='FILE',
-        help='write the points there: a line "x,y", or "x,y,chain", then one line for each; '
-        'without --csv and --plot they are printed',
+        help='write the points to this file: a header "x,y" or "x,y,chain", then one line for '
+        'each; without --csv and --plot they are printed',
     )
     parser.add_argument(
-        '--plot', type=picture, metavar='FILE.png', help='draw map and points, coloured in order'
+        '--plot',
+        type=picture,
+        metavar='FILE.png',
+        help='draw map and points, coloured in their order',
     )
-    parser.set_defaults(run=run)
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -116,6 +118,8 @@ def run(arguments: argparse.Namespace) -> int:
 
     if arguments.csv and arguments.plot and arguments.csv.resolve() == arguments.plot.resolve():
         raise BadInputError(f'--csv and --plot both name {arguments.csv}: choose another name')
+    if arguments.plot:
+        require_extra('plot', '--plot')
     occupancy, space = open_map(arguments)
     keep_map_files(arguments.map, arguments.csv, arguments.plot)
     seed = secrets.randbelow(2**31) if arguments.seed is None else arguments.seed
@@ -146,7 +150,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _draw(arguments: argparse.Namespace, space: GridSpace, seed: int) -> NDArray:
-    """Return the chains of points (k, n, 2) that are asked for."""
+    """Return the requested chains of points (n_chains, n, 2) [m]."""
     from hnr_planner.core import BallWalk, sample, sample_free_space, SpaceError
 
     if arguments.radius is not None and arguments.walk != BallWalk.name:
@@ -163,17 +167,17 @@ def _draw(arguments: argparse.Namespace, space: GridSpace, seed: int) -> NDArray
     try:
         return sample_free_space(space, arguments.n, **settings).points
     except SpaceError as error:
-        raise BadInputError(f'{arguments.map}: nothing to draw from, {error}') from error
+        raise BadInputError(f'{arguments.map}: there is nothing to sample, {error}') from error
 
 
 def _how_many(arguments: argparse.Namespace) -> str:
-    """Return how many points are asked for, in words."""
+    """Return the requested number of points, for titles and messages."""
     chains = f'{arguments.chains:,} chains of ' if arguments.chains > 1 else ''
     return f'{chains}{arguments.n:,} points'
 
 
 def write_csv(chains: NDArray, file: TextIO) -> None:
-    """Write chains (k, n, 2) as "x,y" and a line for each point, with every digit they have."""
+    """Write chains (n_chains, n, 2) as CSV, one line for each point, with all their digits."""
     if len(chains) == 1:
         file.write('x,y\n')
         file.writelines(f'{x!r},{y!r}\n' for x, y in _numbers(chains[0]))
@@ -184,5 +188,5 @@ def write_csv(chains: NDArray, file: TextIO) -> None:
 
 
 def _numbers(points: NDArray) -> Iterator[tuple[float, float]]:
-    """Yield points (n, 2) as numbers of Python."""
+    """Yield points (n, 2) as pairs of Python floats."""
     return ((float(x), float(y)) for x, y in points)

@@ -1,110 +1,77 @@
 """
 The algorithms, free of ROS: spaces, walks on them, and planners.
 
+The public names are loaded when they are first used, so that importing this package costs nothing;
+``hnr_planner`` itself has the same ones.
+
 >>> space = GridSpace.from_blocked(np.zeros((20, 20), bool), resolution=0.5)
 >>> plan(space, start=(1, 1), goal=(9, 9), seed=0).status
 <PlannerStatus.SOLVED: 'a path was found'>
 """
 
-from hnr_planner.core.errors import Cancelled, HnrError, RequestError, SpaceError, StuckError
-from hnr_planner.core.planning.plan import plan
-from hnr_planner.core.planning.planners.hit_and_run import HitAndRun
-from hnr_planner.core.planning.planners.hit_and_run_connect import HitAndRunConnect
-from hnr_planner.core.planning.planners.rrt import RRT
-from hnr_planner.core.planning.planners.rrt_connect import RRTConnect
-from hnr_planner.core.planning.postprocessing.simplify import simplify
-from hnr_planner.core.planning.registry import ALGORITHMS
-from hnr_planner.core.planning.result import FirstSolution, PlannerStatus, PlanResult
-from hnr_planner.core.planning.roadmap.roadmap import Roadmap
-from hnr_planner.core.sampling.chains import begin_chains, Chains, walk_on
-from hnr_planner.core.sampling.diagnostics import (
-    diagnose,
-    Diagnosis,
-    relaxation_time,
-    to_arviz,
-    total_variation,
-    TotalVariation,
-)
-from hnr_planner.core.sampling.free_space import FreeSpaceDraws, sample_free_space
-from hnr_planner.core.sampling.sample import sample
-from hnr_planner.core.sampling.walks import (
-    BallWalk,
-    CoordinateHitAndRunWalk,
-    HitAndRunWalk,
-    WALKS,
-)
-from hnr_planner.core.spaces import (
-    BallSpace,
-    BoxSpace,
-    Chord,
-    DifferenceSpace,
-    GridSpace,
-    OracleError,
-    OracleSpace,
-    PolygonSpace,
-    PolytopeSpace,
-    ProductSpace,
-    ShearedSpace,
-    Space,
-    UnionSpace,
-)
-from hnr_planner.core.trajectories.plan_trajectory import plan_trajectory
-from hnr_planner.core.trajectories.registry import (
-    KINODYNAMIC_ALGORITHMS,
-    KINODYNAMIC_PLANNERS,
-)
-from hnr_planner.core.trajectories.result import TrajectoryResult
-from hnr_planner.core.warm_up import warm_up
+from importlib import import_module
+from typing import Any
 
-__all__ = [
-    'ALGORITHMS',
-    'KINODYNAMIC_ALGORITHMS',
-    'KINODYNAMIC_PLANNERS',
-    'RRT',
-    'WALKS',
-    'BallSpace',
-    'BallWalk',
-    'BoxSpace',
-    'Cancelled',
-    'Chains',
-    'Chord',
-    'CoordinateHitAndRunWalk',
-    'Diagnosis',
-    'DifferenceSpace',
-    'FirstSolution',
-    'FreeSpaceDraws',
-    'GridSpace',
-    'HitAndRun',
-    'HitAndRunConnect',
-    'HitAndRunWalk',
-    'HnrError',
-    'OracleError',
-    'OracleSpace',
-    'PlanResult',
-    'PlannerStatus',
-    'PolygonSpace',
-    'PolytopeSpace',
-    'ProductSpace',
-    'RRTConnect',
-    'RequestError',
-    'Roadmap',
-    'ShearedSpace',
-    'Space',
-    'SpaceError',
-    'StuckError',
-    'TotalVariation',
-    'TrajectoryResult',
-    'UnionSpace',
-    'begin_chains',
-    'diagnose',
-    'plan',
-    'plan_trajectory',
-    'relaxation_time',
-    'sample',
-    'sample_free_space',
-    'simplify',
-    'to_arviz',
-    'total_variation',
-    'walk_on',
-    'warm_up',
-]
+#: Every public name, by the module below this one that defines it. ``__init__.pyi`` has the same
+#: names for type checkers and editors; a test compares the two.
+_NAMES_OF_MODULES = {
+    'errors': ('Cancelled', 'HnrError', 'RequestError', 'SpaceError', 'StuckError'),
+    'planning.plan': ('plan',),
+    'planning.planners.hit_and_run': ('HitAndRun',),
+    'planning.planners.hit_and_run_connect': ('HitAndRunConnect',),
+    'planning.planners.rrt': ('RRT',),
+    'planning.planners.rrt_connect': ('RRTConnect',),
+    'planning.postprocessing.simplify': ('simplify',),
+    'planning.registry': ('ALGORITHMS',),
+    'planning.result': ('FirstSolution', 'PlanResult', 'PlannerStatus', 'SearchResult'),
+    'planning.roadmap.roadmap': ('Roadmap',),
+    'sampling.chains': ('Chains', 'begin_chains', 'walk_on'),
+    'sampling.diagnostics': (
+        'Diagnosis',
+        'TotalVariation',
+        'diagnose',
+        'relaxation_time',
+        'to_arviz',
+        'total_variation',
+    ),
+    'sampling.free_space': ('FreeSpaceDraws', 'sample_free_space'),
+    'sampling.sample': ('sample',),
+    'sampling.walks': ('BallWalk', 'CoordinateHitAndRunWalk', 'HitAndRunWalk', 'WALKS'),
+    'spaces': (
+        'BallSpace',
+        'BoxSpace',
+        'Chord',
+        'DifferenceSpace',
+        'GridSpace',
+        'OracleError',
+        'OracleSpace',
+        'PolygonSpace',
+        'PolytopeSpace',
+        'ProductSpace',
+        'ShearedSpace',
+        'Space',
+        'UnionSpace',
+    ),
+    'systems': ('Car', 'DoubleIntegrator', 'System', 'Trajectory'),
+    'trajectories.plan_trajectory': ('plan_trajectory',),
+    'trajectories.registry': ('KINODYNAMIC_ALGORITHMS', 'KINODYNAMIC_PLANNERS'),
+    'trajectories.result': ('TrajectoryResult',),
+    'warming': ('warm_up',),
+}
+_MODULE_OF = {name: module for module, names in _NAMES_OF_MODULES.items() for name in names}
+
+__all__ = sorted(_MODULE_OF)
+
+
+def __getattr__(name: str) -> Any:
+    """Return a public name, loaded now and kept for the next time."""
+    if name not in _MODULE_OF:
+        raise AttributeError(f'module {__name__!r} has no attribute {name!r}')
+    value = getattr(import_module(f'{__name__}.{_MODULE_OF[name]}'), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    """Return the names of this module, those not loaded yet included."""
+    return sorted({*globals(), *__all__})

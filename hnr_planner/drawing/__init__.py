@@ -7,7 +7,7 @@ pyplot, so nothing global is touched and no display is needed.
 """
 
 from hnr_planner.drawing.figures import figure_of_plans, figure_of_samples, Plan, save
-from hnr_planner.drawing.maps import cell_kinds, draw_map, known_box
+from hnr_planner.drawing.maps import cell_kinds, draw_map, kinds_present, known_box
 from hnr_planner.drawing.searches import (
     draw_ends,
     draw_path,
@@ -47,6 +47,7 @@ __all__ = [
     'draw_tree',
     'figure_of_plans',
     'figure_of_samples',
+    'kinds_present',
     'known_box',
     'save',
 ]

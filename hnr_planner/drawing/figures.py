@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple, TYPE_CHECKING
 
-from hnr_planner.drawing.maps import cell_kinds, draw_map, known_box
+from hnr_planner.drawing.maps import cell_kinds, draw_map, kinds_present, known_box
 from hnr_planner.drawing.searches import draw_ends, draw_path, draw_samples, draw_tree
 from hnr_planner.drawing.style import (
     AGES,
@@ -136,7 +136,7 @@ def _cell_handles(
     occupancy: OccupancyMap, blocked: NDArray[np.bool_] | None
 ) -> list[Patch | Line2D]:
     """Return entries of the legend for the kinds of cells that the map has."""
-    kinds = (KINDS[kind] for kind in np.unique(cell_kinds(occupancy, blocked)))
+    kinds = (KINDS[kind] for kind in kinds_present(cell_kinds(occupancy, blocked)))
     return [
         Patch(facecolor=colour, edgecolor=FRAME, linewidth=0.5, label=label)
         for label, colour in kinds

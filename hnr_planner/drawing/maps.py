@@ -1,4 +1,4 @@
-"""Maps: what every cell is, in its colour."""
+"""Draw the cells of a map, each in the colour of its kind."""
 
 from __future__ import annotations
 
@@ -15,8 +15,17 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 
-#: Values of a map from here on are occupied, 0..100.
+#: Values of a map from here to 100 are drawn as occupied.
 OCCUPIED_FROM = 65
+#: Side of the largest image of a map [pixels]; cells of larger maps are averaged in blocks, which
+#: no figure is large enough to show.
+LARGEST_SIDE = 4000
+#: About how many cells are averaged at a time, to save memory.
+_STRIP = 2**22
+#: The kind of each cell value, by the value as an unsigned byte; 0 free, 2 unknown, 3 occupied.
+_KIND_OF_VALUE = np.full(256, 2, np.uint8)
+_KIND_OF_VALUE[:OCCUPIED_FROM] = 0
+_KIND_OF_VALUE[OCCUPIED_FROM:101] = 3
 
 
 def draw_map(
@@ -33,16 +42,15 @@ def draw_map(
         The map.
     blocked : (rows, cols) bool, optional
         Cells that the planner may not enter; those that are neither occupied nor unknown are
-        what the robot's radius takes away, and are drawn in a light colour of their own.
+        blocked by the robot's radius alone, and drawn in a light colour of their own.
 
     """
-    kinds = cell_kinds(occupancy, blocked)
-    colours = np.round(255 * to_rgba_array([colour for _, colour in KINDS])).astype(np.uint8)
-    rows, cols = kinds.shape
+    image, block = _image(cell_kinds(occupancy, blocked))
+    rows, cols = image.shape[:2]
     axes.imshow(
-        colours[kinds],
+        image,
         origin='lower',
-        extent=(0, cols, 0, rows),
+        extent=(0, cols * block, 0, rows * block),
         transform=_to_map_frame(occupancy) + axes.transData,
         interpolation_stage='rgba',
         zorder=0,
@@ -54,20 +62,22 @@ def draw_map(
 
 def cell_kinds(
     occupancy: OccupancyMap, blocked: NDArray[np.bool_] | None = None
-) -> NDArray[np.int8]:
-    """Return what each cell (rows, cols) is, as a row of `KINDS`."""
-    data = np.asarray(occupancy.data)
-    known = _known(data)
-    kinds = np.where(known, 0, 2).astype(np.int8)
+) -> NDArray[np.uint8]:
+    """Return the kind of each cell (rows, cols), as an index of ``KINDS``."""
+    kinds: NDArray[np.uint8] = _KIND_OF_VALUE[_as_bytes(occupancy)]
     if blocked is not None:
-        kinds[known & blocked] = 1
-    kinds[known & (data >= OCCUPIED_FROM)] = 3
+        kinds[(kinds == 0) & blocked] = 1
     return kinds
+
+
+def kinds_present(kinds: NDArray[np.uint8]) -> list[int]:
+    """Return the kinds that occur among cells, in the order of ``KINDS``."""
+    return [kind for kind in range(len(KINDS)) if (kinds == kind).any()]
 
 
 def known_box(occupancy: OccupancyMap) -> NDArray[np.float64]:
     """Return the box ((x, y) low, (x, y) high) [m] around the known cells, with a margin."""
-    known = _known(np.asarray(occupancy.data))
+    known = _as_bytes(occupancy) <= 100
     if not known.any():
         known[:] = True
     rows = np.flatnonzero(known.any(axis=1))
@@ -80,8 +90,34 @@ def known_box(occupancy: OccupancyMap) -> NDArray[np.float64]:
     return np.array((low - margin, high + margin))
 
 
-def _known(data: NDArray[np.int8]) -> NDArray[np.bool_]:
-    return (data >= 0) & (data <= 100)
+def _image(kinds: NDArray[np.uint8]) -> tuple[NDArray[np.uint8], int]:
+    """
+    Return the colours (rows, cols, 4) of cells, and how many cells a pixel is wide and high.
+
+    A pixel is the mean of its block of cells; a block at the upper or right edge may be smaller.
+    """
+    colours = np.round(255 * to_rgba_array([colour for _, colour in KINDS])).astype(np.uint8)
+    block = -(-max(kinds.shape) // LARGEST_SIDE)
+    if block == 1:
+        return colours[kinds], block
+    columns = np.arange(0, kinds.shape[1], block)
+    n_rows = max(_STRIP // (kinds.shape[1] * block), 1) * block
+    strips = []
+    for first in range(0, len(kinds), n_rows):
+        strip = kinds[first:][:n_rows]
+        rows = np.arange(0, len(strip), block)
+        total = np.zeros((len(rows), len(columns), 4))
+        for kind, colour in enumerate(colours):
+            is_kind = (strip == kind).astype(np.uint32)
+            counts = np.add.reduceat(np.add.reduceat(is_kind, rows, axis=0), columns, axis=1)
+            total += counts[..., np.newaxis] * colour.astype(float)
+        strips.append(np.round(255 * total / total[..., 3:]).astype(np.uint8))
+    return np.concatenate(strips), block
+
+
+def _as_bytes(occupancy: OccupancyMap) -> NDArray[np.uint8]:
+    """Return the values of the cells as unsigned bytes: unknown ones are above 100."""
+    return np.asarray(occupancy.data, dtype=np.int8).view(np.uint8)
 
 
 def _to_map_frame(occupancy: OccupancyMap) -> Affine2D:

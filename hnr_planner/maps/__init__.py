@@ -1,9 +1,9 @@
-"""Maps: files of map_server and of the Moving AI benchmarks, and maps that we generate."""
+"""Maps: files of map_server and of the Moving AI benchmarks, and generated maps."""
 
 from hnr_planner.maps.building import building
 from hnr_planner.maps.corridor import Corridor
-from hnr_planner.maps.errors import MapFileError
-from hnr_planner.maps.loading import load_map
+from hnr_planner.maps.errors import MapFileError, MapFileWarning
+from hnr_planner.maps.loading import is_moving_ai, load_map
 from hnr_planner.maps.map_server import save_map
 from hnr_planner.maps.occupancy import FREE, OccupancyMap, OCCUPIED, UNKNOWN
 from hnr_planner.maps.spiral import spiral
@@ -15,8 +15,10 @@ __all__ = [
     'UNKNOWN',
     'Corridor',
     'MapFileError',
+    'MapFileWarning',
     'OccupancyMap',
     'building',
+    'is_moving_ai',
     'load_map',
     'save_map',
     'serpentine',

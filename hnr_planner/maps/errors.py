@@ -1,4 +1,4 @@
-"""The error that a broken map file raises."""
+"""The error and the warning that map files give."""
 
 from __future__ import annotations
 
@@ -12,5 +12,9 @@ class MapFileError(HnrError, ValueError):
 
     @classmethod
     def about(cls, path: Path, reason: str) -> MapFileError:
-        """Join the file's path and the reason into one line."""
+        """Return the error with the file's path and the reason in one line."""
         return cls(f'{path}: {" ".join(reason.split())}')
+
+
+class MapFileWarning(UserWarning):
+    """A map file was read, but says something twice: the message names the file and the key."""

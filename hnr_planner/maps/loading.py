@@ -1,4 +1,4 @@
-"""Read a map file of any kind that we know, chosen by its suffix."""
+"""Read a map file of either kind, chosen by its suffix."""
 
 from __future__ import annotations
 
@@ -25,6 +25,16 @@ def load_map(path: str | Path) -> OccupancyMap:
         The file or its image cannot be read, or a key is missing or out of range. The message
         is one line that names the file, the key and the value.
 
+    Warns
+    -----
+    MapFileWarning
+        A key of the YAML file occurs repeatedly: the first value counts, as for Nav2.
+
     """
     path = Path(path)
-    return load_moving_ai(path) if path.suffix.lower() == '.map' else load_map_server(path)
+    return load_moving_ai(path) if is_moving_ai(path) else load_map_server(path)
+
+
+def is_moving_ai(path: str | Path) -> bool:
+    """Return whether a file is taken for a map of the Moving AI benchmarks, by its suffix."""
+    return Path(path).suffix.lower() == '.map'

@@ -11,34 +11,49 @@ raw      v where it is 0..100, else -1, whatever ``negate`` says
 =======  ====================================================================================
 
 In trinary and scale a pixel that is not fully opaque is -1. The image's last row is the grid's
-first. The keys and modes are those of Nav2's map_server.
+first. Keys, modes and what counts as a number or a flag are those of Nav2's map_server.
 """
 
 from __future__ import annotations
 
-import math
+from functools import partial
 from pathlib import Path
-from typing import Any, NamedTuple
+import re
+from typing import NamedTuple
+import warnings
 
-from hnr_planner.maps.errors import MapFileError
+from hnr_planner.maps.errors import MapFileError, MapFileWarning
+from hnr_planner.maps.file_kinds import HEAD, IMAGES, kind_of, with_article
 from hnr_planner.maps.occupancy import FREE, OccupancyMap, OCCUPIED, UNKNOWN
-from hnr_planner.maps.pixels import Pixels, read_pixels
+from hnr_planner.maps.pixels import Pixels, read_cells
+from hnr_planner.maps.yaml_text import (
+    as_file_name,
+    as_flag,
+    as_number,
+    Mapping,
+    read_document,
+    shown,
+    Value,
+    YamlError,
+)
 import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 import yaml
 
+#: How grey values become occupancies.
 MODES = ('trinary', 'scale', 'raw')
+#: Keys that a map must have.
 REQUIRED = ('image', 'resolution', 'origin', 'negate', 'occupied_thresh', 'free_thresh')
 
-# What save_map writes: map_server's customary greys, and thresholds that tell them apart
-# (grey 205 is occ = .19608, so that a free_thresh of .25 would call the unknown free).
+#: What `save_map` writes: map_server's customary greys, and thresholds that tell them apart
+#: (grey 205 is occ = .19608, so that a free_thresh of .25 would call the unknown free).
 _GREY_OF = {FREE: 254, UNKNOWN: 205, OCCUPIED: 0}
 _OCCUPIED_THRESH, _FREE_THRESH = 0.65, 0.196
 
 
 class MapHeader(NamedTuple):
-    """The YAML part of a map, checked."""
+    """The YAML part of a map, checked; ``repeated`` has the keys that occur more than once."""
 
     image: Path
     mode: str
@@ -47,20 +62,52 @@ class MapHeader(NamedTuple):
     negate: bool
     occupied_thresh: float
     free_thresh: float
+    repeated: tuple[str, ...] = ()
 
 
 def load_map_server(path: Path) -> OccupancyMap:
-    """Read a map_server YAML file and its image; MapFileError tells what is wrong with them."""
+    """
+    Read a map_server YAML file and its image.
+
+    Raises
+    ------
+    MapFileError
+        One of the two cannot be read; the message names the file, the key, the value and the rule.
+
+    Warns
+    -----
+    MapFileWarning
+        A key occurs repeatedly: the first value counts, as for Nav2.
+
+    """
     header = read_header(path)
+    for key in header.repeated:
+        text = f'{path}: the key {key} occurs repeatedly; the first value counts'
+        warnings.warn(text, MapFileWarning, stacklevel=3)
     try:
-        pixels = read_pixels(header.image)
+        data = read_cells(header.image, partial(occupancy_of, header=header))
     except OSError as error:
-        reason = f'cannot be opened ({error.strerror or error})'
+        reason = f'cannot be opened ({error.strerror or error}){_hint(path, header.image)}'
         raise MapFileError.about(path, f'image: {header.image} {reason}') from None
     except ValueError as error:
         raise MapFileError.about(path, f'image: {header.image} {error}') from error
-    data = occupancy_of(pixels, header)[::-1]
-    return OccupancyMap(np.ascontiguousarray(data), header.resolution, header.origin)
+    return OccupancyMap(data, header.resolution, header.origin)
+
+
+def _hint(path: Path, image: Path) -> str:
+    """Return which file beside the YAML file may be meant by a name that leads nowhere."""
+    name = re.split(r'[\\/]', str(image))[-1]
+    beside = [file.name for file in path.parent.glob('*') if file.is_file()]
+    similar = [other for other in beside if other.casefold() == name.casefold()]
+    similar += [other for other in beside if _is_image_like(other, Path(name).stem)]
+    chosen = name if name in beside else next(iter(similar), None)
+    return f'; beside the YAML file lies {chosen}: write image: {chosen}' if chosen else ''
+
+
+def _is_image_like(name: str, stem: str) -> bool:
+    file = Path(name)
+    is_image = file.suffix.lower() in ('.pgm', '.png', '.bmp', '.pbm', '.ppm')
+    return is_image and file.stem.casefold() == stem.casefold()
 
 
 def save_map(occupancy: OccupancyMap, path: str | Path) -> None:
@@ -128,105 +175,112 @@ def _meanings(header: MapHeader) -> NDArray[np.int8]:
 
 
 def read_header(path: Path) -> MapHeader:
-    """Read and check the YAML part of a map."""
-    fields = _Fields(path, _read_mapping(path))
+    """
+    Read and check the YAML part of a map.
+
+    Raises
+    ------
+    MapFileError
+        It cannot be read, or a key is missing or breaks its rule.
+
+    """
+    mapping = _read_mapping(path)
+    fields = _Fields(path, mapping)
     for key in REQUIRED:
         fields.get(key)
     return MapHeader(
-        image=path.parent / fields.text('image'),  # an absolute name wins over the folder
+        image=path.parent / fields.file_name('image'),  # an absolute name wins over the folder
         mode=fields.mode(),
         resolution=fields.resolution(),
         origin=fields.origin(),
         negate=fields.flag('negate'),
         occupied_thresh=fields.share('occupied_thresh'),
         free_thresh=fields.share('free_thresh'),
+        repeated=mapping.repeated,
     )
 
 
-def _read_mapping(path: Path) -> dict[Any, Any]:
+def _read_mapping(path: Path) -> Mapping:
+    """Return the keys and values of a YAML file, which has to be one."""
     try:
-        mapping = yaml.safe_load(path.read_bytes())
+        with path.open('rb') as file:
+            head = file.read(HEAD)
+            _refuse_other_files(path, head)
+            document = read_document(head + file.read())
     except OSError as error:
         raise MapFileError.about(path, f'cannot be opened ({error.strerror or error})') from None
-    except (yaml.YAMLError, ValueError, RecursionError) as error:
+    except YamlError as error:
         raise MapFileError.about(path, f'is not YAML: {error}') from error
-    if not isinstance(mapping, dict):
+    if not isinstance(document, Mapping):
         raise MapFileError.about(
-            path, f'must be a YAML mapping (key: value), but holds {_shown(mapping)}'
+            path, f'must be a YAML mapping (key: value), but holds {shown(document)}'
         )
-    return mapping
+    return document
+
+
+def _refuse_other_files(path: Path, head: bytes) -> None:
+    """Refuse a file that is recognised as something else, such as the map's image."""
+    kind = kind_of(head)
+    if kind is None:
+        return
+    reason = f'is {with_article(kind)}, not the YAML file of a map'
+    if kind in IMAGES:
+        reason += ': give the YAML file that names it'
+        beside = [path.with_suffix(suffix) for suffix in ('.yaml', '.yml')]
+        reason += ''.join(f', perhaps {file}' for file in beside if file.is_file())
+    raise MapFileError.about(path, reason)
 
 
 class _Fields:
-    """The keys of one YAML file, each read with the rule that it has to obey."""
+    """The keys of one YAML file, each read with the rule that its value has to obey."""
 
-    def __init__(self, path: Path, mapping: dict[Any, Any]) -> None:
+    def __init__(self, path: Path, mapping: Mapping) -> None:
         self._path = path
-        self._mapping = mapping
+        self._values = mapping.values
 
-    def get(self, key: str) -> Any:
-        if key not in self._mapping:
+    def get(self, key: str) -> Value:
+        if key not in self._values:
             raise MapFileError.about(self._path, f'the key {key} is missing')
-        return self._mapping[key]
+        return self._values[key]
 
-    def text(self, key: str) -> str:
-        value = self.get(key)
-        if not isinstance(value, str) or not value.strip() or '\0' in value:
+    def file_name(self, key: str) -> str:
+        name = as_file_name(self.get(key))
+        if name is None:
             raise self._broken(key, "must be a file's name")
-        return value
+        return name
 
     def mode(self) -> str:
-        mode = self._mapping.get('mode', 'trinary')
+        mode = self._values.get('mode', 'trinary')
         if not isinstance(mode, str) or mode.lower() not in MODES:
             raise self._broken('mode', f'must be one of {", ".join(MODES)}')
         return mode.lower()
 
     def resolution(self) -> float:
-        value = _number(self.get('resolution'))
-        if not 0 < value < math.inf:
+        value = as_number(self.get('resolution'))
+        if value is None or value <= 0:
             raise self._broken('resolution', 'must be a finite number > 0')
         return value
 
     def share(self, key: str) -> float:
-        value = _number(self.get(key))
-        if not 0 <= value <= 1:
+        value = as_number(self.get(key))
+        if value is None or not 0 <= value <= 1:
             raise self._broken(key, 'must be a number in 0..1')
         return value
 
     def flag(self, key: str) -> bool:
-        value = self.get(key)
-        if not isinstance(value, int) or value not in (0, 1):
-            raise self._broken(key, 'must be 0, 1, true or false')
-        return bool(value)
+        value = as_flag(self.get(key))
+        if value is None:
+            raise self._broken(key, 'must be an integer or a boolean, such as 0 or false')
+        return value
 
     def origin(self) -> tuple[float, float, float]:
         value = self.get('origin')
-        numbers = [_number(item) for item in value] if isinstance(value, list) else []
-        if len(numbers) != 3 or not all(map(math.isfinite, numbers)):
+        items = value if isinstance(value, list) else []
+        numbers = [number for item in items if (number := as_number(item)) is not None]
+        if len(items) != 3 or len(numbers) != 3:
             raise self._broken('origin', 'must be three finite numbers [x, y, yaw]')
         x, y, yaw = numbers
         return x, y, yaw
 
     def _broken(self, key: str, rule: str) -> MapFileError:
-        return MapFileError.about(self._path, f'{key}: {rule}, not {_shown(self._mapping[key])}')
-
-
-def _number(value: Any) -> float:
-    """
-    Return a YAML scalar as a float, NaN for what is no number.
-
-    PyYAML takes 1e-05 (no dot) for a string, map files do contain it, and yaml-cpp reads it as
-    the number that it is.
-    """
-    if isinstance(value, bool) or not isinstance(value, int | float | str):
-        return math.nan
-    try:
-        return float(value)
-    except (ValueError, OverflowError):
-        return math.nan
-
-
-def _shown(value: Any) -> str:
-    """Return a value as it fits in a one-line message."""
-    text = repr(value)
-    return text if len(text) <= 60 else f'{text[:57]}...'
+        return MapFileError.about(self._path, f'{key}: {rule}, not {shown(self._values[key])}')

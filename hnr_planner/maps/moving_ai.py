@@ -1,8 +1,19 @@
 """
 Grid maps of the Moving AI benchmarks (``.map`` files of type octile).
 
-A header (``type octile``, ``height``, ``width``, ``map``) and one character for each cell:
-``.`` and ``G`` are passable, every other character is blocked.
+A header of keys and values with whitespace between them (``type octile``, ``height``, ``width``,
+in any order, then ``map``) and one character for each cell. By the rules of the format:
+
+=======  ==========================================================================
+. and G  ground, passable
+S        swamp, passable from ground and from swamp
+W        water, passable from water but not from ground
+@ and O  out of bounds
+T        trees, not passable
+=======  ==========================================================================
+
+A cell of an occupancy map is free or occupied for everybody, so ground and swamp are free here,
+and water is occupied, like all else: a robot on the ground can never enter it.
 
 The array's row is the file's row: the file's first line is row 0, y grows downwards in the file
 and upwards on the map, so that maps look upside down, and a scenario's cell (x, y) has its
@@ -19,13 +30,24 @@ from hnr_planner.maps.errors import MapFileError
 from hnr_planner.maps.occupancy import FREE, OccupancyMap, OCCUPIED
 import numpy as np
 
-PASSABLE = b'.G'
+#: Terrain that is free; all other is occupied.
+PASSABLE = b'.GS'
+_MEANINGS = np.full(256, OCCUPIED, np.int8)
+_MEANINGS[list(PASSABLE)] = FREE
 
 
 def load_moving_ai(path: Path) -> OccupancyMap:
-    """Read a ``.map`` file: resolution 1, origin 0; MapFileError tells what is wrong with it."""
+    """
+    Read a ``.map`` file: cells of side 1, origin 0.
+
+    Raises
+    ------
+    MapFileError
+        The file cannot be read; the message names the key, the value and the rule.
+
+    """
     try:
-        lines = path.read_bytes().replace(b'\r\n', b'\n').split(b'\n')
+        lines = path.read_bytes().splitlines()
     except OSError as error:
         raise MapFileError.about(path, f'cannot be opened ({error.strerror or error})') from None
     header, body = _split(path, lines)
@@ -40,23 +62,21 @@ def load_moving_ai(path: Path) -> OccupancyMap:
             reason = f'width: is {width}, but row {number} has {len(row)} cells'
             raise MapFileError.about(path, reason)
     cells = np.frombuffer(b''.join(body), np.uint8).reshape(height, width)
-    passable = np.isin(cells, list(PASSABLE))
-    return OccupancyMap(np.where(passable, FREE, OCCUPIED).astype(np.int8), 1.0)
+    return OccupancyMap(_MEANINGS[cells], 1.0)
 
 
 def _split(path: Path, lines: list[bytes]) -> tuple[dict[bytes, bytes], list[bytes]]:
-    """Return the header's keys, and the rows without the empty lines at the file's end."""
-    if b'map' not in (stripped := [line.strip() for line in lines]):
-        raise MapFileError.about(path, 'the line "map", which starts the cells, is missing')
-    first = stripped.index(b'map') + 1
-    header = {}
-    for line in stripped[: first - 1]:
-        key, _, value = line.partition(b' ')
-        header[key] = value.strip()
-    body = lines[first:]
-    while body and not body[-1]:
-        body.pop()
-    return header, body
+    """Return the header's keys, and the rows without blanks and empty lines at their ends."""
+    header: dict[bytes, bytes] = {}
+    for number, line in enumerate(lines, start=1):
+        key, *values = line.split(maxsplit=1)[:2] or [b'']
+        if key == b'map' and not values:
+            body = [row.rstrip() for row in lines[number:]]
+            while body and not body[-1]:
+                body.pop()
+            return header, body
+        header[key] = b''.join(values).rstrip()
+    raise MapFileError.about(path, 'the line "map", which starts the cells, is missing')
 
 
 def _size(path: Path, header: dict[bytes, bytes], key: str) -> int:

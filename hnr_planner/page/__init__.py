@@ -1,8 +1,8 @@
 """
-A page to look at a search with: the map, how the search unfolds, and the paths, in one file.
+An HTML page that shows the map, how searches unfold, and their paths.
 
-The page needs no server and loads nothing: ``write_page`` puts the data, the style and the script
-into one HTML file.
+The page is one file that needs no server and loads nothing: ``write_page`` writes the data, the
+style and the scripts into it.
 """
 
 from hnr_planner.page.write import Shown, write_page

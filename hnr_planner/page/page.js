@@ -94,7 +94,7 @@ function begin() {
   const [from, to] = [data.start, data.goal].map((p) => p.map((a) => +a.toFixed(2)).join(', '));
   byId('from').textContent += ` (${from})`;
   byId('to').textContent += ` (${to})`;
-  byId('wishes').textContent = data.wishes.join(', ');
+  byId('options').textContent = data.options.join(', ');
   searches.forEach(addAlgorithm);
   Object.keys(LAYERS).forEach(addLayer);
   data.kinds.forEach(addKind);

@@ -48,7 +48,7 @@ function setTime(value) {
   redraw();
 }
 
-// What a newcomer sees at this time, in words.
+// What the page shows at this time, in a sentence.
 function caption() {
   const on = shown();
   if (!on.length) return 'Switch an algorithm on to see its search.';
@@ -62,7 +62,7 @@ function caption() {
   if (!isFound) return 'None of these searches has found a path.';
   if (time === 1 && on.length === 1) return `The path: ${outcome(only)}.`;
   if (time === 1) return 'The thick lines are the paths.';
-  if (!data.simplify) return 'A path is found, and left as it is.';
+  if (!data.simplify) return 'A path is found, and returned as it is.';
   return 'A path is found. Points of it that see each other are joined by a straight line.';
 }
 

@@ -1,4 +1,4 @@
-"""Put map and searches into the page."""
+"""Write map and searches into the page."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from pathlib import Path
 from string import Template
 from typing import Any, NamedTuple
 
-from hnr_planner.core import GridSpace, PlanResult
-from hnr_planner.core.lengths import path_length
-from hnr_planner.drawing import cell_kinds, KINDS, known_box
+from hnr_planner.core.planning.registry import PLANNERS
+from hnr_planner.core.planning.result import PlanResult
+from hnr_planner.core.spaces import GridSpace
+from hnr_planner.drawing import cell_kinds, KINDS, kinds_present, known_box
 from hnr_planner.maps import OccupancyMap
-from hnr_planner.page.found import found_path
 from matplotlib.colors import to_rgb
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -25,21 +25,12 @@ from PIL import Image
 
 #: Okabe and Ito's colours, which people with any kind of colour vision can tell apart.
 COLOURS = ('#0072B2', '#D55E00', '#009E73', '#CC79A7', '#E69F00', '#56B4E9')
-#: More samples of a search than these are left out: the page would be slow.
+#: Most samples of a search that are shown; with more the page would be slow.
 MOST_SAMPLES = 60_000
-#: In the order in which the page reads them.
+#: Scripts of the page, in the order in which it runs them.
 SCRIPTS = ('searches.js', 'drawing.js', 'view.js', 'page.js')
-#: What each planner does, for a newcomer.
-ABOUT = {
-    'hit_and_run': 'Hit-and-Run walks: a line through the newest sample in a random direction, '
-    'and the next sample anywhere on its free part, the chord.',
-    'rrt': 'RRT grows a tree: its vertex nearest to a random point is extended towards that '
-    'point, up to the first obstacle.',
-    'hit_and_run_connect': 'Two trees grow from start and goal by steps of Hit-and-Run: of a few '
-    'random directions the longest free one. They end when they see each other.',
-    'rrt_connect': 'Two trees grow from start and goal towards random points, and after each step '
-    'towards each other, until they meet.',
-}
+#: What each planner does, by its name.
+ABOUT = {entry.name: f'{entry.name}: {entry.summary}.' for entry in PLANNERS}
 
 
 class Shown(NamedTuple):
@@ -49,17 +40,14 @@ class Shown(NamedTuple):
     Attributes
     ----------
     result : PlanResult
-        What came of it.
+        The result of the search.
     asked : bool
-        Whether it is shown from the start.
-    notes : sequence of str
-        What else is to be said about it, such as a wish that the planner cannot take.
+        Whether it is shown when the page opens.
 
     """
 
     result: PlanResult
     asked: bool
-    notes: Sequence[str] = ()
 
 
 def write_page(
@@ -73,42 +61,42 @@ def write_page(
     *,
     goal_radius: float = 0.0,
     simplify: bool = True,
-    wishes: Sequence[str] = (),
+    options: Sequence[str] = (),
 ) -> None:
     """
-    Write the page.
+    Write a page of one request and the searches for it.
 
     Parameters
     ----------
     file : Path
-        Where to.
+        The HTML file to write.
     title : str
         Its heading, such as the name of the map.
     occupancy, space
-        The map, and the space that the robot has on it.
+        The map, and the robot's free space on it.
     start, goal : (2,)
         Ends of the request [m].
     searches : sequence of Shown
         At least one, at most as many as there are ``COLOURS``.
     goal_radius : float
-        That of the request [m], to be drawn.
+        Radius of the goal region [m], which is drawn.
     simplify : bool
         Whether the paths were to be shortened.
-    wishes : sequence of str
-        What else was asked for, in words.
+    options : sequence of str
+        Further options of the request, as phrases.
 
     """
     kinds = cell_kinds(occupancy, space.blocked)
     data = {
         'map': _map(occupancy, kinds),
-        'kinds': [KINDS[kind] for kind in np.unique(kinds)],
+        'kinds': [KINDS[kind] for kind in kinds_present(kinds)],
         'start': np.asarray(start, dtype=float).tolist(),
         'goal': np.asarray(goal, dtype=float).tolist(),
         'goal_radius': goal_radius,
         'simplify': simplify,
-        'wishes': list(wishes),
+        'options': list(options),
         'searches': [
-            _search(space, shown, found_path(shown.result, goal, goal_radius), colour)
+            _search(space, shown, colour)
             for shown, colour in zip(searches, COLOURS[: len(searches)], strict=True)
         ],
     }
@@ -123,9 +111,9 @@ def write_page(
     file.write_text(page, encoding='utf-8')
 
 
-def _map(occupancy: OccupancyMap, kinds: NDArray[np.int8]) -> dict[str, Any]:
-    """Return the map as an image of its cells' kinds, row 0 first, and its place."""
-    image = Image.fromarray(kinds.astype(np.uint8), mode='P')
+def _map(occupancy: OccupancyMap, kinds: NDArray[np.uint8]) -> dict[str, Any]:
+    """Return the map: an image of the kinds of cells, row 0 first, with resolution and origin."""
+    image = Image.fromarray(kinds, mode='P')
     colours = np.round(255 * np.array([to_rgb(colour) for _, colour in KINDS]))
     image.putpalette(colours.astype(np.uint8).tobytes())
     written = BytesIO()
@@ -138,13 +126,12 @@ def _map(occupancy: OccupancyMap, kinds: NDArray[np.int8]) -> dict[str, Any]:
     }
 
 
-def _search(
-    space: GridSpace, shown: Shown, found: NDArray[np.float64], colour: str
-) -> dict[str, Any]:
-    """Return what the page needs of a search, and of the path as it was found."""
+def _search(space: GridSpace, shown: Shown, colour: str) -> dict[str, Any]:
+    """Return the data of one search."""
     result = shown.result
+    found = path_as_found(result)
     samples, parents = result.samples[:MOST_SAMPLES], result.parents[:MOST_SAMPLES]
-    notes = list(shown.notes)
+    notes = []
     if len(samples) < len(result.samples):
         notes.append(f'only the first {len(samples):,} samples are shown')
     return {
@@ -161,11 +148,26 @@ def _search(
         'parents': _packed(parents, np.int32),
         'chords': _packed(_chords(space, result.planner, samples, parents), np.float32),
         'found': found.tolist(),
-        'found_length': path_length(found) if len(found) else None,
+        'found_length': result.first_solution.length if result.first_solution else None,
         'path': result.path.tolist(),
         'others': [path.tolist() for path in result.others],
         'length': result.length if math.isfinite(result.length) else None,
     }
+
+
+def path_as_found(result: PlanResult) -> NDArray[np.float64]:
+    """
+    Return the path (m, 2) [m] that the search on the page found, before it was shortened.
+
+    It is empty where there is none, and where the first solution is another search's than the one
+    whose samples the result has, which ``optimize_for`` may bring about.
+    """
+    first, nothing = result.first_solution, np.empty((0, 2))
+    if first is None:
+        return nothing
+    samples = set(map(tuple, result.samples.tolist()))
+    is_along = all(tuple(vertex) in samples for vertex in first.path[1:-1].tolist())
+    return first.path if is_along else nothing
 
 
 def _chords(
@@ -183,6 +185,6 @@ def _chords(
 
 
 def _packed(array: NDArray, kind: type[np.generic]) -> str:
-    """Return an array as the browser reads it: little-endian, base64."""
+    """Return an array as text for the browser: little-endian, base64."""
     little = np.dtype(kind).newbyteorder('<')
     return base64.b64encode(np.ascontiguousarray(array, dtype=little).tobytes()).decode()

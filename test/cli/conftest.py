@@ -42,10 +42,10 @@ def run_process(*arguments: object, cwd: Path | None = None, **environment: str)
     return Ran(done.returncode, done.stdout, done.stderr)
 
 
-@pytest.fixture(scope='session', autouse=True)
+@pytest.fixture(scope='session')
 def compiled() -> None:
-    """Compile once, so that no command says that it waits for that."""
-    warm_up()
+    """Compile once, so that no command prints that it waits for that."""
+    warm_up('paths', 'samples')
 
 
 @pytest.fixture

@@ -15,7 +15,31 @@ CASES = {
     'unknown command': (['plam'], ['plam', 'plan']),
     'no map': (['plan', '--start', '1', '1', '--goal', '2', '2'], ['required: ']),
     'no goal': (['plan', 'MAP', '--start', '1', '3'], ['--goal']),
-    'one coordinate': (['plan', 'MAP', '--start', '1', '--goal', '2', '3'], ['--start']),
+    'one coordinate': (
+        ['plan', 'MAP', '--start', '1', '--goal', '2', '3'],
+        ['--start 1 0.5', 'not 1 '],
+    ),
+    'three coordinates': (
+        ['plan', 'MAP', '--start', '1', '2', '3', '--goal', '2', '3'],
+        ['--start 1 2;', 'not 1 2 3'],
+    ),
+    'three coordinates before the map': (
+        ['plan', '--goal', '2', '3', '4', '--start', '1', '2', 'MAP'],
+        ['--goal 2 3;', 'not 2 3 4'],
+    ),
+    'comma': (
+        ['plan', 'MAP', '--start', '.5,.5', '--goal', '2', '3'],
+        ['--start .5 .5;', 'not .5,.5'],
+    ),
+    'comma after an equals sign': (
+        ['plan', 'MAP', '--goal=2,-3', '--start', '1', '2'],
+        ['--goal 2 -3;', 'not 2,-3'],
+    ),
+    'comma and blank': (
+        ['plan', 'MAP', '--start', '1,', '2', '--goal', '2', '3'],
+        ['--start 1 2;', 'not 1, 2'],
+    ),
+    'brackets': (['sample', 'MAP', '--n', '5', '--start', '(1, 2)'], ['--start 1 2;', '(1, 2)']),
     'word for a number': ([*PLAN[:2], '--start', 'x', '3', *PLAN[5:]], ['--start', "'x'"]),
     'nan': ([*PLAN[:2], '--start', 'nan', '3', *PLAN[5:]], ['--start', 'nan', 'finite']),
     'infinite goal': ([*PLAN[:5], '--goal', '-inf', '3'], ['--goal', '-inf', 'finite']),
@@ -127,3 +151,15 @@ def test_a_file_that_cannot_be_written_is_named(run: Run, places: dict[str, str]
     ran = run('sample', places['MAP'], '--n', 3, '--csv', '/proc/points.csv')
     assert ran.code == 2
     assert '/proc/points.csv' in ran.err and ran.err.count('\n') == 1
+
+
+def test_a_repeated_key_is_a_warning_of_one_line(run: Run, places: dict[str, str]) -> None:
+    file = Path(places['BROKEN'])
+    file.write_text(Path(places['MAP']).read_text() + 'resolution: 7\n')
+    (file.parent / 'rooms.png').write_bytes(
+        (Path(places['MAP']).parent / 'rooms.png').read_bytes()
+    )
+    ran = run('sample', file, '--n', 1, '--seed', 1)
+    text = f'warning: {file}: the key resolution occurs repeatedly; the first value counts\n'
+    assert (ran.code, ran.err) == (0, text)
+    assert ran.out == run('sample', places['MAP'], '--n', 1, '--seed', 1).out

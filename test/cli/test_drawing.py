@@ -111,3 +111,41 @@ def test_a_map_of_which_nothing_is_known_can_be_drawn(tmp_path: Path) -> None:
     figure = drawing.figure_of_samples(occupancy, np.empty((0, 2)), title='nothing')
     drawing.save(figure, tmp_path / 'a.png')
     check_picture(tmp_path / 'a.png')
+
+
+@pytest.mark.parametrize('shape', [(4100, 30), (30, 8003), (4001, 4003)])
+def test_cells_of_a_large_map_are_drawn_where_they_are(shape: tuple[int, int]) -> None:
+    data = np.zeros(shape, dtype=np.int8)
+    rows, cols = shape
+    data[: rows // 3, : cols // 2] = 100
+    data[2 * (rows // 3) :, : cols // 2] = -1
+    occupancy = OccupancyMap(data, 0.05, (1.0, 2.0, 0.0))
+    figure = Figure(figsize=(6, 6))
+    axes = figure.subplots()
+    drawing.draw_map(axes, occupancy)
+    axes.set_aspect('auto')
+    (image,) = axes.images
+    assert max(image.get_array().shape[:2]) <= 4000
+    for row, col, kind in (
+        (rows / 6, cols / 4, 'occupied'),
+        (rows / 6, 3 * cols / 4, 'free'),
+        (5 * rows / 6, cols / 4, 'unknown'),
+    ):
+        found = colour_at(figure, at(occupancy, row, col))
+        assert np.abs(found - to_rgb(COLOURS[kind])).max() < 0.01, kind
+
+
+def test_a_pixel_of_a_large_map_is_the_mean_of_its_cells() -> None:
+    data = np.zeros((10, 8001), dtype=np.int8)
+    data[:3, :3] = 100  # a block of 3 x 3 cells
+    data[3, 3] = 100  # one cell of the next one
+    figure = Figure()
+    axes = figure.subplots()
+    drawing.draw_map(axes, OccupancyMap(data, 0.05))
+    pixels = np.asarray(axes.images[0].get_array())
+    free, occupied = (255 * np.array(to_rgb(COLOURS[kind])) for kind in ('free', 'occupied'))
+    assert pixels.shape == (4, 2667, 4)
+    assert np.abs(pixels[0, 0, :3] - occupied).max() <= 1
+    assert np.abs(pixels[1, 1, :3] - (8 * free + occupied) / 9).max() <= 1
+    assert np.abs(pixels[-1, -1, :3] - free).max() <= 1
+    assert (pixels[..., 3] == 255).all()

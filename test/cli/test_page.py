@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import base64
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from io import BytesIO
 import json
 import math
@@ -17,10 +18,9 @@ import shutil
 from test.cli.conftest import at, OFFICE, Ran
 from typing import Any
 
-from hnr_planner.cli.plan_page import answer
 from hnr_planner.core import GridSpace, plan
 from hnr_planner.maps import load_map, OccupancyMap
-from hnr_planner.page.found import found_path
+from hnr_planner.page.write import path_as_found
 from matplotlib.colors import to_rgb
 import numpy as np
 from PIL import Image
@@ -33,12 +33,15 @@ from selenium.webdriver.common.by import By  # noqa: E402
 from selenium.webdriver.common.keys import Keys  # noqa: E402
 from selenium.webdriver.support.ui import WebDriverWait  # noqa: E402
 
+pytestmark = pytest.mark.usefixtures('compiled')
+
 OPTIONS = (
     '--headless --no-sandbox --disable-gpu --disable-quic --no-first-run --window-size=1400,860 '
     '--disable-background-networking --disable-component-update --disable-sync '
     '--host-resolver-rules=MAP\u00a0*\u00a0~NOTFOUND'
 )
 REQUEST = ('--start', 3, 22, '--goal', 34, 5, '--robot-radius', 0.22, '--seed', 3)
+REQUEST += ('--optimize-for', 0, '--time-limit', 600)
 SHOWN = {
     'hit_and_run': '#0072B2',
     'rrt': '#D55E00',
@@ -140,7 +143,7 @@ class Page:
         return np.asarray(Image.open(BytesIO(written)).convert('RGB'), dtype=int)
 
     def has(self, colour: str) -> bool:
-        """Say whether a colour covers more than a few pixels."""
+        """Return whether a colour covers more than a few pixels."""
         wanted = np.round(255 * np.array(to_rgb(colour)))
         return int((np.abs(self.pixels() - wanted).max(axis=2) <= 3).sum()) > 150
 
@@ -194,7 +197,7 @@ def test_it_holds_the_search_that_was_asked_for(page: Page) -> None:
     [['--alternatives', 2, '--goal-radius', 0.5], ['--no-simplify'], ['--clearance', 0.2]],
     ids=lambda settings: settings[0],
 )
-def test_every_algorithm_answers_as_the_command_does_with_all_settings_that_it_takes(
+def test_every_algorithm_answers_as_the_command_does(
     run: Callable[..., Ran],
     rooms: OccupancyMap,
     rooms_file: Path,
@@ -202,15 +205,13 @@ def test_every_algorithm_answers_as_the_command_does_with_all_settings_that_it_t
     settings: list[object],
 ) -> None:
     file = tmp_path / 'page.html'
-    command = ['plan', rooms_file, *through_the_door(rooms), '--seed', 4, '--time-limit', 20]
+    command = ['plan', rooms_file, *through_the_door(rooms), '--seed', 4, '--time-limit', 600]
+    command += ['--optimize-for', 0]
     assert run(*command, *settings, '--html', file).code == 0
     shown = {search['name']: search for search in data_of(file)['searches']}
     assert shown.keys() == SHOWN.keys()
     for name, search in shown.items():
-        takes = settings[0] != '--clearance' or name == 'hit_and_run_connect'
-        assert search['notes'] == ([] if takes else ['keeps no clearance'])
-        alone = [*command, '--algorithm', name, *(settings if takes else []), '--json']
-        result = json.loads(run(*alone).out)
+        result = json.loads(run(*command, '--algorithm', name, *settings, '--json').out)
         assert [search['path'], *search['others']] == result['paths']
         assert search['iterations'] == result['iterations']
         assert search['found'][0] == search['path'][0]
@@ -221,29 +222,38 @@ def test_every_algorithm_looks_for_shorter_paths(
 ) -> None:
     file, ends = tmp_path / 'page.html', through_the_door(rooms)
     assert run('plan', rooms_file, *ends, '--optimize-for', 0.1, '--html', file).code == 0
-    assert 'the best path of 0.1 s' in data_of(file)['wishes']
+    assert 'the best path of 0.1 s' in data_of(file)['options']
 
     space = GridSpace.from_occupancy(rooms.data, rooms.resolution, rooms.origin)
     request = {'start': ends[1:3], 'goal': ends[4:6], 'seed': 4, 'time_limit': math.inf}
     for name in SHOWN:
-        plain = answer(space, {**request, 'algorithm': name}).result
-        better = answer(space, {**request, 'algorithm': name, 'optimize_iterations': 2}).result
+        plain = plan(space, **request, algorithm=name)
+        better = plan(space, **request, algorithm=name, optimize_iterations=2)
         assert better.iterations > plain.iterations and better.length <= plain.length
 
 
 @pytest.mark.parametrize('goal_radius', [0.0, 1.0])
 @pytest.mark.parametrize('algorithm', SHOWN)
-def test_the_path_as_found_is_read_off_the_samples(algorithm: str, goal_radius: float) -> None:
+def test_the_path_as_found_lies_on_the_samples(algorithm: str, goal_radius: float) -> None:
     office = load_map(OFFICE)
     space = GridSpace.from_occupancy(office.data, office.resolution, office.origin)
-    request = {'algorithm': algorithm, 'goal_radius': goal_radius, 'time_limit': 60.0}
+    request = {'algorithm': algorithm, 'goal_radius': goal_radius, 'time_limit': math.inf}
     goal = (34.0, 5.0)
     for seed in range(10):
         shortened, found = (
             plan(space, (3.0, 22.0), goal, simplify=simplify, seed=seed, **request)
             for simplify in (True, False)
         )
-        assert found_path(shortened, goal, goal_radius) == pytest.approx(found.path, abs=1e-9)
+        assert np.array_equal(path_as_found(shortened), found.path)
+
+
+def test_a_path_that_another_search_found_is_not_drawn(rooms: OccupancyMap) -> None:
+    space = GridSpace.from_occupancy(rooms.data, rooms.resolution, rooms.origin)
+    ends = at(rooms, 5, 5), at(rooms, 8, 75)
+    one, other = (plan(space, *ends, algorithm='rrt', seed=seed) for seed in (1, 2))
+    assert len(path_as_found(one)) > 2
+    assert len(path_as_found(replace(one, first_solution=other.first_solution))) == 0
+    assert len(path_as_found(replace(one, first_solution=None))) == 0
 
 
 def test_it_plays_to_the_end(page: Page) -> None:

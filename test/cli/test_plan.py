@@ -10,12 +10,16 @@ from test.brute_force import path_collisions
 from test.cli.conftest import at, OFFICE, Ran, ROOT, run_process
 from test.cli.pictures import check_picture
 
-from hnr_planner.cli.plan import ALGORITHM_NAMES
+from hnr_planner.cli.main import build_parser
+from hnr_planner.cli.plan import OPTIMIZE_FOR, optimize_for
 from hnr_planner.cli.sample import WALK_NAMES
 from hnr_planner.core import ALGORITHMS, GridSpace, WALKS
+from hnr_planner.core.planning.registry import PLANNERS
 from hnr_planner.maps import load_map, OccupancyMap, save_map
 import numpy as np
 import pytest
+
+pytestmark = pytest.mark.usefixtures('compiled')
 
 Run = Callable[..., Ran]
 KEYS = [
@@ -28,6 +32,8 @@ KEYS = [
     'length',
     'path',
     'paths',
+    'goal_offset',
+    'escape',
 ]
 
 
@@ -36,12 +42,14 @@ def ends(rooms: OccupancyMap) -> list[object]:
     return ['--start', *at(rooms, 5, 5), '--goal', *at(rooms, 8, 75)]
 
 
-def test_help_names_what_the_core_has() -> None:
-    assert set(ALGORITHM_NAMES) == set(ALGORITHMS)
+def test_help_names_what_the_core_has(run: Run) -> None:
     assert set(WALK_NAMES) == set(WALKS)
+    text = run('plan', '--help').out
+    for entry in PLANNERS:
+        assert f'  {entry.name} ' in text and entry.summary in text
 
 
-@pytest.mark.parametrize('command', [[], ['plan'], ['sample'], ['demo']])
+@pytest.mark.parametrize('command', [[], ['plan'], ['sample'], ['demo'], ['experiment']])
 def test_help_imports_nothing_heavy(command: list[str]) -> None:
     program = (
         'import sys; from hnr_planner.cli.main import main; '
@@ -86,7 +94,8 @@ def test_same_seed_same_path_in_another_process(run: Run) -> None:
     def result(run: Run) -> dict:
         ran = run(
             'plan', OFFICE, '--start', 3, 22, '--goal', 34, 5, '--robot-radius', 0.22,
-            '--algorithm', 'hit_and_run', '--seed', 7, '--time-limit', 30, '--json',
+            '--algorithm', 'hit_and_run', '--seed', 7, '--time-limit', 600, '--json',
+            '--optimize-for', 0,
         )  # fmt: skip
         assert ran.code == 0, ran.err
         return {key: value for key, value in json.loads(ran.out).items() if key != 'elapsed'}
@@ -180,12 +189,19 @@ def test_optimize_for_never_ends_with_a_longer_path(
 ) -> None:
     command = ['plan', rooms_file, *ends(rooms), '--algorithm', 'rrt', '--seed', 1, '--json']
     command += ['--time-limit', 20]
-    plain, better = (
-        json.loads(run(*command, *more).out) for more in ([], ['--optimize-for', 0.3])
-    )
+    plain, better = (json.loads(run(*command, '--optimize-for', time).out) for time in (0, 0.3))
     assert better['length'] <= plain['length']
     assert better['iterations'] > plain['iterations']
     assert better['elapsed'] >= 0.3
+
+
+def test_the_path_is_optimized_by_default_unless_it_is_not_to_be_simplified() -> None:
+    parser = build_parser()
+    command = ['plan', 'map.yaml', '--start', '1', '1', '--goal', '2', '2']
+    assert optimize_for(parser.parse_args(command)) == OPTIMIZE_FOR == 0.02
+    assert optimize_for(parser.parse_args([*command, '--optimize-for', '0'])) == 0.0
+    assert optimize_for(parser.parse_args([*command, '--no-simplify'])) == 0.0
+    assert optimize_for(parser.parse_args([*command, '--no-simplify', '--optimize-for', '1'])) == 1
 
 
 def test_time_limit_ends_a_longer_search_for_shorter_paths(
@@ -221,9 +237,37 @@ def test_clearance_keeps_the_path_away_from_walls(
     space = GridSpace.from_occupancy(rooms.data, rooms.resolution, rooms.origin)
     nearest, less_near = (space.path_clearance(each['path']) for each in (shortest, wider))
     assert nearest < 0.05 < 0.1 < less_near
-    refused = run(*command, '--algorithm', 'rrt', '--clearance', 0.2)
+    refused = run(*command, '--no-simplify', '--clearance', 0.2)
     assert refused.code == 2
-    assert "no setting 'clearance'" in refused.err
+    assert 'clearance must be 0 when simplify is false' in refused.err
+
+
+def test_goal_tolerance_ends_beside_a_blocked_goal(
+    run: Run, rooms: OccupancyMap, rooms_file: Path
+) -> None:
+    command = ['plan', rooms_file, '--start', *at(rooms, 5, 5), '--goal', *at(rooms, 5, 40)]
+    command += ['--seed', 1, '--time-limit', 600, '--json']
+    assert json.loads(run(*command).out)['status'] == 'INVALID_GOAL'
+    ran = run(*command, '--goal-tolerance', 0.5)
+    result = json.loads(ran.out)
+    assert (ran.code, result['status']) == (0, 'SOLVED')
+    offset = math.dist(result['path'][-1], at(rooms, 5, 40))
+    assert 0.0 < offset <= 0.5
+    assert result['goal_offset'] == pytest.approx(offset)
+
+
+def test_start_escape_leads_out_of_the_inflation(
+    run: Run, rooms: OccupancyMap, rooms_file: Path
+) -> None:
+    command = ['plan', rooms_file, '--start', *at(rooms, 5, 2), '--goal', *at(rooms, 8, 75)]
+    command += ['--robot-radius', 0.25, '--seed', 1, '--time-limit', 600, '--json']
+    assert json.loads(run(*command).out)['status'] == 'INVALID_START'
+    ran = run(*command, '--start-escape', 1.0)
+    result = json.loads(ran.out)
+    assert (ran.code, result['status']) == (0, 'SOLVED')
+    assert result['path'][0] == list(at(rooms, 5, 2))
+    assert result['escape'] == pytest.approx(math.dist(*result['path'][:2]))
+    assert 0.0 < result['escape'] <= 1.0
 
 
 def test_unknown_cells_block_unless_told_otherwise(run: Run, tmp_path: Path) -> None:
@@ -233,6 +277,11 @@ def test_unknown_cells_block_unless_told_otherwise(run: Run, tmp_path: Path) -> 
     command = ['plan', tmp_path / 'map.yaml', '--start', 0.5, 0.5, '--goal', 1.5, 1.5, '--json']
     assert json.loads(run(*command).out)['status'] == 'UNREACHABLE'
     assert json.loads(run(*command, '--unknown', 'free').out)['status'] == 'SOLVED'
+
+
+def test_the_map_may_come_last(run: Run, rooms: OccupancyMap, rooms_file: Path) -> None:
+    ran = run('plan', *ends(rooms), rooms_file)
+    assert ran.code == 0, ran.err
 
 
 def test_negative_and_tiny_coordinates_are_numbers(run: Run, tmp_path: Path) -> None:

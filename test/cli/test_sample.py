@@ -15,6 +15,7 @@ from hnr_planner.maps import OccupancyMap
 import numpy as np
 import pytest
 
+pytestmark = pytest.mark.usefixtures('compiled')
 Run = Callable[..., Ran]
 
 

@@ -1,9 +1,10 @@
 """Every format of image that a map may come in."""
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from hnr_planner.maps.pixels import read_pixels
+from hnr_planner.maps.pixels import Pixels, read_cells
 import numpy as np
 from PIL import Image
 import pytest
@@ -17,8 +18,18 @@ def read(tmp_path: Path, name: str, image: Image.Image | bytes, **options: Any) 
         path.write_bytes(image)
     else:
         image.save(path, **options)
-    pixels = read_pixels(path)
-    return np.where(pixels.transparent, -1, pixels.thirds / 3)
+    return values(path)
+
+
+def values(path: Path) -> np.ndarray:
+    """Return the grey value of each pixel, -1 where it is transparent, from the image's top."""
+
+    def part(meaning: Callable[[Pixels], np.ndarray]) -> np.ndarray:
+        return read_cells(path, lambda pixels: meaning(pixels).astype(np.int8))[::-1].astype(int)
+
+    # In parts that fit into a cell of 8 bits.
+    thirds = part(lambda pixels: pixels.thirds & 127) + 128 * part(lambda p: p.thirds >> 7)
+    return np.where(part(lambda pixels: pixels.transparent), -1, thirds / 3)
 
 
 @pytest.mark.parametrize('name', ['a.png', 'a.pgm', 'a.bmp'])
@@ -92,4 +103,28 @@ def test_palette_with_transparency(tmp_path: Path) -> None:
 def test_the_name_does_not_tell_the_format(tmp_path: Path) -> None:
     Image.fromarray(GREYS).save(tmp_path / 'a.bmp')
     (tmp_path / 'a.bmp').rename(tmp_path / 'a.pgm')
-    assert np.array_equal(read_pixels(tmp_path / 'a.pgm').thirds, 3.0 * GREYS)
+    assert np.array_equal(values(tmp_path / 'a.pgm'), GREYS)
+
+
+def test_one_bit_with_a_transparent_value(tmp_path: Path) -> None:
+    image = Image.fromarray(np.array([[0, 255]], np.uint8)).convert('1')
+    assert read(tmp_path, 'a.png', image, transparency=0).tolist() == [[-1, 255]]
+
+
+def test_grey_with_a_transparent_value(tmp_path: Path) -> None:
+    image = Image.fromarray(GREYS)
+    expected = np.where(GREYS == 205, -1, GREYS.astype(int))
+    assert np.array_equal(read(tmp_path, 'a.png', image, transparency=205), expected)
+
+
+@pytest.mark.parametrize('mode', ['1', 'L', 'P', 'LA', 'RGB', 'RGBA', 'I;16'])
+def test_an_image_of_many_strips_is_read_like_its_rows(tmp_path: Path, mode: str) -> None:
+    noise = np.random.default_rng(1).integers(0, 256, (1700, 1300)).astype(np.uint8)
+    deep = noise.astype(np.uint16) * 257
+    image = Image.fromarray(deep if mode == 'I;16' else noise)
+    image = image if mode == 'I;16' else image.convert(mode)
+    whole = read(tmp_path, 'a.png', image)
+    assert whole.shape == (1700, 1300)
+    for top, bottom in ((0, 1), (800, 820), (1699, 1700)):
+        part = read(tmp_path, 'b.png', image.crop((0, top, 1300, bottom)))
+        assert np.array_equal(whole[top:bottom], part)

@@ -146,12 +146,6 @@ def test_colour_counts_as_the_mean_of_its_channels(write_map: MapWriter) -> None
     assert values(write_map(pixels, occupied_thresh=2 / 3 + 1e-9)) == [[-1, -1, 100]]
 
 
-def test_image_larger_than_memory_sense_is_refused(write_map: MapWriter) -> None:
-    path = write_map(b'P5\n60000 60000\n255\n', image='map.pgm')
-    with pytest.raises(ValueError, match='image'):
-        load_map(path)
-
-
 def test_image_modes_agree(write_map: MapWriter) -> None:
     grey = Image.fromarray(EVERY_GREY)
     expected = values(write_map(grey))

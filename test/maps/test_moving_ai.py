@@ -20,10 +20,26 @@ def test_row_of_the_file_is_row_of_the_grid(tmp_path: Path) -> None:
     assert (loaded.resolution, loaded.origin) == (1.0, (0.0, 0.0, 0.0))
 
 
-def test_only_dot_and_g_are_passable(tmp_path: Path) -> None:
-    row = '.G@OTSW#g,1'
+def test_ground_and_swamp_are_free_and_all_else_is_occupied(tmp_path: Path) -> None:
+    row = '.GS@OTW#gs,1'
     text = f'type octile\nheight 1\nwidth {len(row)}\nmap\n{row}\n'
-    assert load_map(written(tmp_path, text)).data.tolist() == [[0, 0] + [100] * 9]
+    assert load_map(written(tmp_path, text)).data.tolist() == [[0, 0, 0] + [100] * 9]
+
+
+@pytest.mark.parametrize(
+    'head',
+    [
+        'type\toctile\nheight\t2\nwidth\t5\nmap\n',
+        'type octile \nheight   2\t\nwidth 5  \nmap \n',
+        '  type octile\n\theight 2\n width 5\n\tmap\n',
+        'type octile\n\nheight 2\nwidth 5\n\nmap\n',
+        'width 5\nheight 2\ntype octile\nmap\n',
+        'type octile\rheight 2\rwidth 5\rmap\r',
+    ],
+    ids=['tabs', 'blanks behind', 'blanks before', 'empty lines', 'another order', 'old Mac'],
+)
+def test_whitespace_and_order_of_the_header_do_not_matter(tmp_path: Path, head: str) -> None:
+    assert load_map(written(tmp_path, head + '.G@OT\n..... \n')).data.shape == (2, 5)
 
 
 @pytest.mark.parametrize('text', [WHOLE.replace('\n', '\r\n'), WHOLE.rstrip('\n'), WHOLE + '\n\n'])

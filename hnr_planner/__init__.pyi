@@ -1,0 +1,3 @@
+from hnr_planner.core import *  # noqa: F403
+
+__version__: str

@@ -1,0 +1,134 @@
+"""The front door: the public names of ``hnr_planner`` and of ``hnr_planner.core``."""
+
+import ast
+import importlib
+from pathlib import Path
+import subprocess
+import sys
+from types import ModuleType
+
+import hnr_planner
+from hnr_planner import core
+import pytest
+
+ROOT = Path(__file__).resolve().parents[1]
+
+#: Public names, which users rely on: none of them may disappear.
+PROMISED = {
+    'ALGORITHMS',
+    'BallSpace',
+    'BallWalk',
+    'BoxSpace',
+    'Cancelled',
+    'Car',
+    'Chains',
+    'Chord',
+    'CoordinateHitAndRunWalk',
+    'Diagnosis',
+    'DifferenceSpace',
+    'DoubleIntegrator',
+    'FirstSolution',
+    'FreeSpaceDraws',
+    'GridSpace',
+    'HitAndRun',
+    'HitAndRunConnect',
+    'HitAndRunWalk',
+    'HnrError',
+    'KINODYNAMIC_ALGORITHMS',
+    'KINODYNAMIC_PLANNERS',
+    'OracleError',
+    'OracleSpace',
+    'PlanResult',
+    'PlannerStatus',
+    'PolygonSpace',
+    'PolytopeSpace',
+    'ProductSpace',
+    'RRT',
+    'RRTConnect',
+    'RequestError',
+    'Roadmap',
+    'ShearedSpace',
+    'Space',
+    'SpaceError',
+    'StuckError',
+    'System',
+    'TotalVariation',
+    'Trajectory',
+    'UnionSpace',
+    'WALKS',
+    'begin_chains',
+    'diagnose',
+    'plan',
+    'relaxation_time',
+    'sample',
+    'sample_free_space',
+    'simplify',
+    'to_arviz',
+    'total_variation',
+    'walk_on',
+    'warm_up',
+}
+
+
+def test_no_promised_name_disappears() -> None:
+    assert set(core.__all__) >= PROMISED
+    assert hnr_planner.__all__ == core.__all__
+
+
+@pytest.mark.parametrize('name', core.__all__)
+def test_both_packages_have_the_same_value_under_a_name(name: str) -> None:
+    value = getattr(core, name)
+    assert getattr(hnr_planner, name) is value
+    assert not isinstance(value, ModuleType)
+
+
+@pytest.mark.parametrize('package', [hnr_planner, core])
+def test_no_module_hides_a_public_name(package: ModuleType) -> None:
+    assert package.__file__ is not None
+    modules = {path.stem for path in Path(package.__file__).parent.iterdir()}
+    assert modules.isdisjoint(core.__all__)
+
+
+@pytest.mark.parametrize('package', [hnr_planner, core])
+def test_an_unknown_name_is_an_attribute_error(package: ModuleType) -> None:
+    with pytest.raises(AttributeError, match=rf"'{package.__name__}' has no attribute 'plam'"):
+        package.plam  # noqa: B018
+    with pytest.raises(ImportError):
+        exec(f'from {package.__name__} import plam')
+
+
+@pytest.mark.parametrize('package', [hnr_planner, core])
+def test_completion_offers_every_name(package: ModuleType) -> None:
+    assert set(dir(package)) >= {*core.__all__, '__doc__'}
+
+
+def test_systems_are_also_in_their_own_package() -> None:
+    systems = importlib.import_module('hnr_planner.core.systems')
+    assert systems.DoubleIntegrator is core.DoubleIntegrator and systems.Car is core.Car
+
+
+def test_type_checkers_see_the_same_names_from_the_same_modules() -> None:
+    stub = ast.parse((ROOT / 'hnr_planner/core/__init__.pyi').read_text())
+    seen = {}
+    for statement in stub.body:
+        assert isinstance(statement, ast.ImportFrom) and statement.module is not None
+        for alias in statement.names:
+            assert alias.asname == alias.name  # else it is not re-exported
+            seen[alias.name] = statement.module
+    assert seen == {name: f'hnr_planner.core.{module}' for name, module in core._MODULE_OF.items()}
+
+
+@pytest.mark.parametrize(
+    'statement',
+    ['import hnr_planner', 'import hnr_planner.core', 'from hnr_planner import HnrError'],
+)
+def test_the_door_imports_nothing_heavy(statement: str) -> None:
+    program = (
+        f'{statement}; import sys; '
+        'heavy = {"numpy", "numba", "scipy", "cv2", "matplotlib"} & sys.modules.keys(); '
+        'assert not heavy, heavy'
+    )
+    done = subprocess.run(
+        [sys.executable, '-c', program], cwd=ROOT, capture_output=True, text=True, timeout=60
+    )
+    assert done.returncode == 0, done.stderr
