@@ -102,7 +102,7 @@ class _Surroundings(NamedTuple):
         window = slice(first[1], last[1]), slice(first[0], last[0])
         parts = np.pad(space.data.labels[1:-1, 1:-1][window], 1)
         occupied = np.pad(space.occupied[window], 1)
-        values = np.where(occupied, np.pad(snapshot.grid.data[window], 1), -1)
+        values = np.where(occupied, np.pad(snapshot.occupancy.data[window], 1), -1)
         here = here - (first - 1)
         around = _cells_around(here)
         _, obstacle = cv2.connectedComponents(occupied.view(np.uint8), connectivity=8)

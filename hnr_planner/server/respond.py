@@ -1,9 +1,8 @@
 """
-What turns a request into an answer, without ROS: `answer(request, settings, newest_map, cancel)`.
+From a request to a response: ``respond(request, settings, newest_map, cancel)``.
 
-Whatever happens, the caller gets a `PathReport`: the name of the outcome and why in words. A
-request is checked, planned on the newest map, and the path is held against the map that is newest
-then.
+A request is checked, planned on the newest map, and its path is checked on the map that is newest
+then. Whatever happens, the caller gets a ``PlanResponse``.
 """
 
 from collections.abc import Callable
@@ -12,32 +11,28 @@ import math
 import threading
 import time
 
-from hnr_planner.core import (
-    HnrError,
-    KINODYNAMIC_PLANNERS,
-    plan,
-    PlannerStatus,
-    PlanResult,
-)
-from hnr_planner.ros.messages.trajectories import as_path
+from hnr_planner.core import HnrError, plan, PlannerStatus, PlanResult
 from hnr_planner.server.escape import escape_point
 from hnr_planner.server.map_store import MapSnapshot
 from hnr_planner.server.outcomes import Outcome, Refusal
 from hnr_planner.server.path_validity import first_blocked_pose
+from hnr_planner.server.poses import MOST_POSES, pose_rows
 from hnr_planner.server.requests import check_request, PlanRequest, Pose
 from hnr_planner.server.responses import PlanResponse
 from hnr_planner.server.settings import Settings
+from hnr_planner.server.trajectories import trajectory_path
+from hnr_planner.server.waiting import NewestMap, wait_for_map
 from hnr_planner.server.waypoints import joined
 import numpy as np
 
-NewestMap = Callable[[], MapSnapshot]
 ToFrame = Callable[[Pose, str], Pose]
+
+#: Time [s] that a search gets at least, so that it can still prove a goal unreachable.
 SHORTEST_TIME = 1e-3
-"""Time [s] that a second search gets at least, so that it can still prove a goal unreachable."""
 
 
 def only_same_frame(pose: Pose, frame: str) -> Pose:
-    """Return `pose` in `frame`, for those who know no transforms: in no other can it be."""
+    """Return ``pose`` in ``frame``, or raise Refusal (BAD_FRAME): no transforms are known."""
     if pose.frame not in ('', frame):
         raise Refusal(
             Outcome.BAD_FRAME,
@@ -55,38 +50,38 @@ def respond(
     to_frame: ToFrame = only_same_frame,
 ) -> PlanResponse:
     """
-    Return the answer to `request`.
+    Plan for ``request`` and return how that ended.
 
     Parameters
     ----------
-    request : Request
-        What is asked for, as it arrived.
+    request : PlanRequest
+        The request as it arrived.
     settings : Settings
         The parameters in force.
     newest_map : callable
         Returns the map in use, or raises Refusal; called again after the search.
     cancel : threading.Event
-        Ends the search when it is set.
+        Ends the work when it is set.
     to_frame : callable
-        Brings a pose into a frame, or raises Refusal (BAD_FRAME) with words that follow on the
-        name of the pose.
+        Transforms a pose into a frame, or raises Refusal (BAD_FRAME) with words that follow on
+        the name of the pose.
 
     """
     began = time.monotonic()
     snapshot = None
     try:
         check_request(request)
-        snapshot = newest_map()
+        snapshot = wait_for_map(newest_map, settings.patience, cancel)
         job = _Job(settings, newest_map, cancel, to_frame, began + settings.time_limit)
-        report = job.plan_for_newest_map(request, snapshot)
+        response = job.plan_for_newest_map(request, snapshot)
     except Refusal as refusal:
-        report = PlanResponse(refusal.outcome, refusal.why, request, snapshot=snapshot)
-    return replace(report, elapsed=time.monotonic() - began)
+        response = PlanResponse(refusal.outcome, refusal.why, request, snapshot=snapshot)
+    return replace(response, elapsed=time.monotonic() - began)
 
 
 @dataclass(frozen=True)
 class _Job:
-    """The circumstances under which one request is answered."""
+    """The circumstances of one request."""
 
     settings: Settings
     newest_map: NewestMap
@@ -95,21 +90,37 @@ class _Job:
     deadline: float
 
     def plan_for_newest_map(self, request: PlanRequest, snapshot: MapSnapshot) -> PlanResponse:
-        """Plan on `snapshot`, and again for as long as a newer map blocks the path just found."""
+        """Plan on ``snapshot``, and again as long as a newer map blocks the path just found."""
         first = snapshot
         while True:
-            report = self._plan_legs(self._in_frame(request, snapshot.frame), snapshot)
-            if report.outcome is Outcome.TIMEOUT and snapshot is not first:
+            response = self._plan_legs(self._in_frame(request, snapshot.frame), snapshot)
+            if response.outcome is Outcome.TIMEOUT and snapshot is not first:
                 raise self._map_changed()
-            if not report.solved:
-                return report
+            if not response.solved:
+                return response
             newer = self.newest_map()
-            if newer.number == snapshot.number or _still_holds(report, newer):
-                clearance = float(newer.space.path_clearance(report.path))
-                return replace(report, snapshot=newer, clearance=clearance)
+            if newer.number == snapshot.number or _is_still_free(response, newer):
+                return self._finished(replace(response, snapshot=newer), newer)
             if time.monotonic() >= self.deadline:
                 raise self._map_changed()
             snapshot = newer
+
+    def _finished(self, response: PlanResponse, snapshot: MapSnapshot) -> PlanResponse:
+        """Return a solved response with its clearance and its poses."""
+        path, spacing = response.path, self.settings.pose_spacing
+        if len(path) > MOST_POSES:
+            raise Refusal(
+                Outcome.ITERATION_LIMIT,
+                f'the path that was found has {len(path)} vertices, and no more than {MOST_POSES} '
+                'are sent',
+            )
+        if spacing < 0.0:
+            spacing = snapshot.occupancy.resolution
+        return replace(
+            response,
+            clearance=float(snapshot.space.path_clearance(path)),
+            poses=pose_rows(path, spacing, response.goal_orientation),
+        )
 
     def _map_changed(self) -> Refusal:
         """Return the refusal for a path that a newer map has blocked."""
@@ -122,13 +133,13 @@ class _Job:
     def _in_frame(self, request: PlanRequest, frame: str) -> PlanRequest:
         """Return the request in the frame of the map, or raise Refusal (BAD_FRAME)."""
 
-        def bring(name: str, pose: Pose) -> Pose:
+        def transform(name: str, pose: Pose) -> Pose:
             try:
                 return self.to_frame(pose, frame)
             except Refusal as refusal:
                 raise Refusal(refusal.outcome, f'the {name} {refusal.why}') from refusal
 
-        start, *via, goal = (bring(name, pose) for name, pose in request.named_poses)
+        start, *via, goal = (transform(name, pose) for name, pose in request.named_poses)
         return replace(request, start=start, via=tuple(via), goal=goal)
 
     def _plan_legs(self, request: PlanRequest, snapshot: MapSnapshot) -> PlanResponse:
@@ -153,12 +164,12 @@ class _Job:
         Plan on one map.
 
         A start that is not free is led out by the shortest way within the escape radius, and the
-        words say so; the path still begins where it was asked to.
+        words say so; the path still begins where it was requested.
         """
         start = request.start.point
         result, why = self._plan_from(start, request, snapshot)
         escape, radius = 0.0, self.settings.escape_radius
-        escapes = radius > 0.0 and request.algorithm not in KINODYNAMIC_PLANNERS
+        escapes = radius > 0.0 and not request.has_inertia
         if result.status is PlannerStatus.INVALID_START and escapes:
             outside = escape_point(snapshot, start, request.goal.point, radius)
             if outside is None:
@@ -169,13 +180,21 @@ class _Job:
                 result = _led_out(result, start, escape)
                 why += f'; the start was led out by {escape:.4g} m because {blocked}'
         outcome = Outcome[result.status.name]
-        return PlanResponse(outcome, why, request, result, escape=escape, snapshot=snapshot)
+        return PlanResponse(
+            outcome,
+            why,
+            request,
+            result,
+            trajectory=result.trajectory,
+            escape=escape,
+            snapshot=snapshot,
+        )
 
     def _plan_from(
         self, start: tuple[float, float] | np.ndarray, request: PlanRequest, snapshot: MapSnapshot
     ) -> tuple[PlanResult, str]:
         """
-        Plan from a point, and say how it went.
+        Plan from a point, and return the result and how it ended in words.
 
         A goal that is free and reachable is never moved; one that is not gives way to the nearest
         point that the robot can reach within the tolerance, and the words say so.
@@ -183,8 +202,7 @@ class _Job:
         goal = request.goal.point
         arguments = self.settings.plan_arguments | {'algorithm': request.algorithm}
         begin = np.array(start)
-        kinodynamic = KINODYNAMIC_PLANNERS.get(request.algorithm)
-        if kinodynamic is not None:
+        if request.has_inertia:
             arguments |= self.settings.motion_arguments(request.algorithm)
             begin = np.append(begin, (0.0, 0.0))  # at rest
 
@@ -198,7 +216,8 @@ class _Job:
                 raise Refusal(Outcome.BAD_REQUEST, str(error)) from error
             if result.trajectory is None:
                 return result
-            return replace(result, path=as_path(result.trajectory, snapshot.space))
+            path = trajectory_path(result.trajectory, snapshot.space, self._check_time)
+            return replace(result, path=path)
 
         result = search(goal)
         why = result.message
@@ -210,28 +229,39 @@ class _Job:
         if nearest is None:
             return result, f'{why}; nothing within {request.tolerance:g} m of it can be reached'
         # The end has been moved already: a region around it would move it once more.
-        if kinodynamic is None or not kinodynamic.samples_goal:
+        if not self.settings.needs_region(request.algorithm):
             arguments['goal_radius'] = 0.0
         result = search(nearest)
         offset = math.dist(nearest, goal)
         return result, f'{result.message}; the goal was moved by {offset:.4g} m because {why}'
 
+    def _check_time(self) -> None:
+        """Raise Refusal (CANCELLED, TIMEOUT) when the request has to end."""
+        if self.cancel.is_set():
+            raise Refusal(Outcome.CANCELLED, 'the request was cancelled after the search')
+        if time.monotonic() >= self.deadline:
+            raise Refusal(
+                Outcome.TIMEOUT,
+                f'the time limit of {self.settings.time_limit:g} s passed after the search, '
+                'before its trajectory was a path',
+            )
+
 
 def _led_out(result: PlanResult, start: tuple[float, float], escape: float) -> PlanResult:
-    """Return a result whose path, if any, begins with the way out of `start`."""
+    """Return a result whose path, if any, begins with the way out of ``start``."""
     if result.status is not PlannerStatus.SOLVED:
         return result
     path = np.vstack([np.array(start), result.path])
     return replace(result, path=path, length=result.length + escape)
 
 
-def _still_holds(report: PlanResponse, newer: MapSnapshot) -> bool:
+def _is_still_free(response: PlanResponse, newer: MapSnapshot) -> bool:
     """Return whether a path found on one map is a path on a newer one."""
-    if first_blocked_pose(report.free_path, report.frame, newer) is not None:
+    if first_blocked_pose(response.free_path, response.frame, newer) is not None:
         return False
     # The way out of a blocked start must still be the shortest one.
-    if report.escape == 0.0:
+    if response.escape == 0.0:
         return True
-    start, goal = report.request.start.point, report.request.goal.point
-    outside = escape_point(newer, start, goal, 2.0 * report.escape)
-    return outside is not None and np.array_equal(outside, report.path[1])
+    start, goal = response.request.start.point, response.request.goal.point
+    outside = escape_point(newer, start, goal, 2.0 * response.escape)
+    return outside is not None and np.array_equal(outside, response.path[1])

@@ -18,9 +18,9 @@ from typing import Any
 
 from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import PoseStamped
-from hnr_planner.ros.messages.maps import message_from_grid
+from hnr_planner.maps import OccupancyMap
+from hnr_planner.ros.messages.maps import message_from_map
 from hnr_planner.ros.messages.outcomes import read_outcome
-from hnr_planner.server.map_store import Grid
 from hnr_planner.server.outcomes import Outcome
 from nav_msgs.msg import OccupancyGrid
 from nav_msgs.msg import Path as PathMessage
@@ -77,7 +77,7 @@ class NodeProcess:
         ]
         # A map that differs from the last in its cells only is told of quietly.
         settings += ['--log-level', 'hnr_planner:=debug']
-        command = [sys.executable, '-m', f'hnr_planner.ros.{module}', '--ros-args', *settings]
+        command = [sys.executable, '-m', f'hnr_planner.ros.node.{module}', '--ros-args', *settings]
         self._log = log
         with log.open('w') as output:
             self.popen = subprocess.Popen(
@@ -174,7 +174,7 @@ def grid_message(
 ) -> OccupancyGrid:
     """Return a map message."""
     stamp = rclpy.clock.Clock().now().to_msg()
-    return message_from_grid(Grid(data, resolution, origin, frame), stamp)
+    return message_from_map(OccupancyMap(data, resolution, origin, frame), stamp)
 
 
 def set_field(message: Any, field: str, value: object) -> None:

@@ -6,14 +6,17 @@ from test.ros.harness import points_in, set_field
 
 from builtin_interfaces.msg import Time
 from hnr_planner.core import GridSpace, plan
-from hnr_planner.ros.messages.maps import as_written, grid_from_message, message_from_grid
-from hnr_planner.ros.messages.markers import MOST_POINTS, serialised_markers
+from hnr_planner.maps import OccupancyMap
+from hnr_planner.ros.messages.maps import map_from_message, message_from_map
+from hnr_planner.ros.messages.markers import serialised_markers
 from hnr_planner.ros.messages.paths import path_message, serialised_path
 from hnr_planner.ros.messages.samples import LAYOUT, samples_message
-from hnr_planner.server.map_store import Grid, MapError, MapSnapshot
+from hnr_planner.server.map_store import MapSnapshot
 from hnr_planner.server.outcomes import Outcome
+from hnr_planner.server.received_maps import as_written, MapError
 from hnr_planner.server.requests import PlanRequest, Pose
 from hnr_planner.server.responses import PlanResponse
+from hnr_planner.server.shapes import MOST_POINTS
 from nav_msgs.msg import OccupancyGrid
 from nav_msgs.msg import Path as PathMessage
 import numpy as np
@@ -29,14 +32,14 @@ DATA = np.arange(-1, 5, dtype=np.int8).reshape(2, 3)
 
 def message(**changes: object) -> OccupancyGrid:
     """Return a good map message, with some fields changed."""
-    result = message_from_grid(Grid(DATA, 0.05, (1.0, -2.0, 0.5), 'floor'), STAMP)
+    result = message_from_map(OccupancyMap(DATA, 0.05, (1.0, -2.0, 0.5), 'floor'), STAMP)
     for name, value in changes.items():
         set_field(result, name.replace('__', '.'), value)
     return result
 
 
 def test_map_survives_the_way_there_and_back() -> None:
-    grid = grid_from_message(message())
+    grid = map_from_message(message())
     assert np.array_equal(grid.data, DATA)
     assert grid.data.dtype == np.int8
     assert grid.resolution == 0.05
@@ -47,7 +50,7 @@ def test_map_survives_the_way_there_and_back() -> None:
 @pytest.mark.parametrize('resolution', [0.05, 0.1, 0.025, 1.0, 0.03, 1e-4, 12.5, 1000.0])
 def test_resolution_is_read_as_it_was_written(resolution: float) -> None:
     assert as_written(float(np.float32(resolution))) == resolution
-    assert grid_from_message(message(info__resolution=resolution)).resolution == resolution
+    assert map_from_message(message(info__resolution=resolution)).resolution == resolution
 
 
 BAD_MAPS = {
@@ -72,13 +75,13 @@ BAD_MAPS = {
 @pytest.mark.parametrize(('words', 'changes'), BAD_MAPS.items())
 def test_impossible_map_is_refused_with_the_value(words: str, changes: dict) -> None:
     with pytest.raises(MapError, match=words):
-        grid_from_message(message(**changes))
+        map_from_message(message(**changes))
 
 
 def test_origin_without_orientation_is_refused() -> None:
     bad = message(info__origin__orientation__z=0.0, info__origin__orientation__w=0.0)
     with pytest.raises(MapError, match='norm above 0'):
-        grid_from_message(bad)
+        map_from_message(bad)
 
 
 def test_yaw_of_an_origin_of_any_norm_is_read() -> None:
@@ -86,14 +89,14 @@ def test_yaw_of_an_origin_of_any_norm_is_read() -> None:
         info__origin__orientation__z=7.0 * math.sin(0.25),
         info__origin__orientation__w=7.0 * math.cos(0.25),
     )
-    assert grid_from_message(scaled).origin[2] == pytest.approx(0.5)
+    assert map_from_message(scaled).origin[2] == pytest.approx(0.5)
 
 
-def report_on_a_map() -> PlanResponse:
+def response_on_a_map() -> PlanResponse:
     """Return a solved request with a tree of some size."""
     data = np.zeros((60, 60), dtype=np.int8)
     data[5:55, 20] = data[5:55, 40] = 100
-    grid = Grid(data, 0.1, (3.0, 4.0, 0.3), 'map')
+    grid = OccupancyMap(data, 0.1, (3.0, 4.0, 0.3), 'map')
     space = GridSpace.from_occupancy(data, grid.resolution, grid.origin)
     start, goal = space.cell_centres(np.array([30, 30]), np.array([5, 55]))
     result = plan(space, start, goal, algorithm='rrt', seed=1, simplify=False)
@@ -104,7 +107,7 @@ def report_on_a_map() -> PlanResponse:
 
 
 def test_cloud_holds_samples_and_parents_of_the_result() -> None:
-    result = report_on_a_map().result
+    result = response_on_a_map().result
     assert result is not None and len(result.samples) > 10
     cloud = samples_message(result, 100_000, HEADER)
     points = points_in(cloud)
@@ -120,7 +123,7 @@ def test_cloud_holds_samples_and_parents_of_the_result() -> None:
 
 
 def test_capped_cloud_refers_to_its_own_points() -> None:
-    result = report_on_a_map().result
+    result = response_on_a_map().result
     assert result is not None
     points = points_in(samples_message(result, 9, HEADER))
     assert len(points) == 9
@@ -160,15 +163,15 @@ def test_path_from_arrays_is_the_path_of_the_answer(frame: str, n_poses: int) ->
 
 @pytest.mark.parametrize('frame', FRAMES)
 def test_markers_are_whole_in_every_frame(frame: str) -> None:
-    report = report_on_a_map()
+    response = response_on_a_map()
     header = Header(stamp=STAMP, frame_id=frame)
-    shapes = markers_of(report, header)
+    shapes = markers_of(response, header)
     assert all(shape.header == header for shape in shapes)
     assert [shape.points for shape in shapes] == [
-        shape.points for shape in markers_of(report, HEADER)
+        shape.points for shape in markers_of(response, HEADER)
     ]
     assert [shape.scale for shape in shapes] == [
-        shape.scale for shape in markers_of(report, HEADER)
+        shape.scale for shape in markers_of(response, HEADER)
     ]
 
 
@@ -177,15 +180,15 @@ def points_of(marker: Marker) -> np.ndarray:
     return np.array([(point.x, point.y) for point in marker.points])
 
 
-def markers_of(report: PlanResponse, header: Header = HEADER) -> list[Marker]:
-    """Return the markers of a report as a subscriber gets them."""
-    return deserialize_message(serialised_markers(report, header), MarkerArray).markers
+def markers_of(response: PlanResponse, header: Header = HEADER) -> list[Marker]:
+    """Return the markers of a response as a subscriber gets them."""
+    return deserialize_message(serialised_markers(response, header), MarkerArray).markers
 
 
 def test_markers_show_samples_tree_path_and_ends() -> None:
-    report = report_on_a_map()
-    assert report.result is not None
-    first, *shapes = markers_of(report)
+    response = response_on_a_map()
+    assert response.result is not None
+    first, *shapes = markers_of(response)
     assert first.action == Marker.DELETEALL
     by_name = {shape.ns: shape for shape in shapes}
     assert {name: shape.type for name, shape in by_name.items()} == {
@@ -195,22 +198,22 @@ def test_markers_show_samples_tree_path_and_ends() -> None:
         'start': Marker.SPHERE,
         'goal': Marker.SPHERE,
     }
-    assert len(by_name['samples'].points) == len(report.result.samples)
-    assert len(by_name['tree'].points) == 2 * (len(report.result.samples) - 1)
-    assert len(by_name['path'].points) == len(report.path)
-    assert points_of(by_name['path']).tolist() == report.path.tolist()
-    assert by_name['goal'].pose.position.x == report.path[-1][0]
+    assert len(by_name['samples'].points) == len(response.result.samples)
+    assert len(by_name['tree'].points) == 2 * (len(response.result.samples) - 1)
+    assert len(by_name['path'].points) == len(response.path)
+    assert points_of(by_name['path']).tolist() == response.path.tolist()
+    assert by_name['goal'].pose.position.x == response.path[-1][0]
     assert all(shape.header.stamp == STAMP for shape in (first, *shapes))
 
 
 def test_markers_are_capped() -> None:
-    report = report_on_a_map()
-    assert report.result is not None
+    response = response_on_a_map()
+    assert response.result is not None
     chain = np.linspace((3.0, 4.0), (4.0, 5.0), 3 * MOST_POINTS)
     parents = np.arange(-1, len(chain) - 1)
-    result = replace(report.result, samples=chain, parents=parents, path=chain)
-    report = replace(report, result=result)
-    sizes = {shape.ns: len(shape.points) for shape in markers_of(report)}
+    result = replace(response.result, samples=chain, parents=parents, path=chain)
+    response = replace(response, result=result)
+    sizes = {shape.ns: len(shape.points) for shape in markers_of(response)}
     assert sizes['samples'] == sizes['path'] == MOST_POINTS
     assert MOST_POINTS - 2 <= sizes['tree'] <= MOST_POINTS
 
