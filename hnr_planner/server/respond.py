@@ -11,8 +11,16 @@ import math
 import threading
 import time
 
-from hnr_planner.core import HnrError, plan, PlannerStatus, PlanResult
-from hnr_planner.server.escape import escape_point
+from hnr_planner.core import (
+    plan,
+    plan_trajectory,
+    PlannerStatus,
+    PlanResult,
+    RequestError,
+    TrajectoryResult,
+)
+from hnr_planner.core.kernels.clock import working_time
+from hnr_planner.core.planning.escape import escape_point
 from hnr_planner.server.map_store import MapSnapshot
 from hnr_planner.server.outcomes import Outcome, Refusal
 from hnr_planner.server.path_validity import first_blocked_pose
@@ -24,6 +32,7 @@ from hnr_planner.server.trajectories import trajectory_path
 from hnr_planner.server.waiting import NewestMap, wait_for_map
 from hnr_planner.server.waypoints import joined
 import numpy as np
+from numpy.typing import ArrayLike
 
 ToFrame = Callable[[Pose, str], Pose]
 
@@ -67,12 +76,12 @@ def respond(
         the name of the pose.
 
     """
-    began = time.monotonic()
+    began, deadline = time.monotonic(), working_time() + settings.time_limit
     snapshot = None
     try:
         check_request(request)
         snapshot = wait_for_map(newest_map, settings.patience, cancel)
-        job = _Job(settings, newest_map, cancel, to_frame, began + settings.time_limit)
+        job = _Job(settings, newest_map, cancel, to_frame, deadline)
         response = job.plan_for_newest_map(request, snapshot)
     except Refusal as refusal:
         response = PlanResponse(refusal.outcome, refusal.why, request, snapshot=snapshot)
@@ -81,7 +90,7 @@ def respond(
 
 @dataclass(frozen=True)
 class _Job:
-    """The circumstances of one request."""
+    """The circumstances of one request; ``deadline`` is a time of the clock ``working_time``."""
 
     settings: Settings
     newest_map: NewestMap
@@ -101,7 +110,7 @@ class _Job:
             newer = self.newest_map()
             if newer.number == snapshot.number or _is_still_free(response, newer):
                 return self._finished(replace(response, snapshot=newer), newer)
-            if time.monotonic() >= self.deadline:
+            if working_time() >= self.deadline:
                 raise self._map_changed()
             snapshot = newer
 
@@ -155,104 +164,94 @@ class _Job:
             legs.append(leg)
             x, y = leg.path[-1].tolist()
             start = replace(end, position=(x, y, 0.0))
-        result = joined([leg.result for leg in legs if leg.result is not None])
+        result = joined([leg.result for leg in legs if isinstance(leg.result, PlanResult)])
         why = '; '.join(f'leg {number}: {leg.why}' for number, leg in enumerate(legs, 1))
         return replace(legs[0], why=why, request=request, result=result)
 
     def _plan(self, request: PlanRequest, snapshot: MapSnapshot) -> PlanResponse:
-        """
-        Plan on one map.
-
-        A start that is not free is led out by the shortest way within the escape radius, and the
-        words say so; the path still begins where it was requested.
-        """
-        start = request.start.point
-        result, why = self._plan_from(start, request, snapshot)
-        escape, radius = 0.0, self.settings.escape_radius
-        escapes = radius > 0.0 and not request.has_inertia
-        if result.status is PlannerStatus.INVALID_START and escapes:
-            outside = escape_point(snapshot, start, request.goal.point, radius)
-            if outside is None:
-                why += f'; no straight way of {radius:g} m at most leads out of there'
-            else:
-                escape, blocked = math.dist(start, outside), why
-                result, why = self._plan_from(outside, request, snapshot)
-                result = _led_out(result, start, escape)
-                why += f'; the start was led out by {escape:.4g} m because {blocked}'
-        outcome = Outcome[result.status.name]
+        """Plan on one map, from the start to the goal."""
+        try:
+            if request.has_inertia:
+                return self._plan_trajectory(request, snapshot)
+            result = plan(
+                snapshot.space,
+                request.start.point,
+                request.goal.point,
+                algorithm=request.algorithm,
+                goal_tolerance=request.tolerance,
+                time_limit=self._time_left(),
+                cancel=self.cancel,
+                **self.settings.plan_arguments,
+            )
+        except RequestError as error:
+            raise Refusal(Outcome.BAD_REQUEST, str(error)) from error
         return PlanResponse(
-            outcome,
-            why,
+            Outcome[result.status.name],
+            result.message,
             request,
             result,
-            trajectory=result.trajectory,
-            escape=escape,
+            escape=result.escape,
             snapshot=snapshot,
         )
 
-    def _plan_from(
-        self, start: tuple[float, float] | np.ndarray, request: PlanRequest, snapshot: MapSnapshot
-    ) -> tuple[PlanResult, str]:
+    def _plan_trajectory(self, request: PlanRequest, snapshot: MapSnapshot) -> PlanResponse:
         """
-        Plan from a point, and return the result and how it ended in words.
+        Plan for a robot with inertia, at rest at the start.
 
-        A goal that is free and reachable is never moved; one that is not gives way to the nearest
-        point that the robot can reach within the tolerance, and the words say so.
+        A goal that is blocked or unreachable gives way to the nearest point that the robot can
+        reach within the tolerance, and the words say so.
         """
         goal = request.goal.point
-        arguments = self.settings.plan_arguments | {'algorithm': request.algorithm}
-        begin = np.array(start)
-        if request.has_inertia:
-            arguments |= self.settings.motion_arguments(request.algorithm)
-            begin = np.append(begin, (0.0, 0.0))  # at rest
-
-        def search(end: tuple[float, float] | np.ndarray) -> PlanResult:
-            left = max(self.deadline - time.monotonic(), SHORTEST_TIME)
-            try:
-                result = plan(
-                    snapshot.space, begin, end, time_limit=left, cancel=self.cancel, **arguments
-                )
-            except HnrError as error:
-                raise Refusal(Outcome.BAD_REQUEST, str(error)) from error
-            if result.trajectory is None:
-                return result
-            path = trajectory_path(result.trajectory, snapshot.space, self._check_time)
-            return replace(result, path=path)
-
-        result = search(goal)
+        result = self._search_trajectory(request, snapshot, goal, moved=False)
         why = result.message
-        if result.status not in (PlannerStatus.INVALID_GOAL, PlannerStatus.UNREACHABLE):
-            return result, why
-        if request.tolerance == 0.0:
-            return result, why
-        nearest = snapshot.space.nearest_reachable(start, goal, request.tolerance)
-        if nearest is None:
-            return result, f'{why}; nothing within {request.tolerance:g} m of it can be reached'
-        # The end has been moved already: a region around it would move it once more.
-        if not self.settings.needs_region(request.algorithm):
-            arguments['goal_radius'] = 0.0
-        result = search(nearest)
-        offset = math.dist(nearest, goal)
-        return result, f'{result.message}; the goal was moved by {offset:.4g} m because {why}'
+        missed = result.status in (PlannerStatus.INVALID_GOAL, PlannerStatus.UNREACHABLE)
+        if missed and request.tolerance > 0.0:
+            nearest = snapshot.space.nearest_reachable(
+                request.start.point, goal, request.tolerance
+            )
+            if nearest is None:
+                why += f'; nothing within {request.tolerance:g} m of it can be reached'
+            else:
+                result = self._search_trajectory(request, snapshot, nearest, moved=True)
+                offset = math.dist(nearest, goal)
+                why = f'{result.message}; the goal was moved by {offset:.4g} m because {why}'
+        outcome, trajectory = Outcome[result.status.name], result.trajectory
+        if trajectory is not None:
+            path = trajectory_path(trajectory, snapshot.space, self._check_time)
+            result = replace(result, path=path)
+        return PlanResponse(
+            outcome, why, request, result, trajectory=trajectory, snapshot=snapshot
+        )
+
+    def _search_trajectory(
+        self, request: PlanRequest, snapshot: MapSnapshot, goal: ArrayLike, *, moved: bool
+    ) -> TrajectoryResult:
+        """Search a trajectory from the start of ``request`` to a point (2,) [m]."""
+        return plan_trajectory(
+            snapshot.space,
+            self.settings.system,
+            (*request.start.point, 0.0, 0.0),
+            goal,
+            algorithm=request.algorithm,
+            time_limit=self._time_left(),
+            cancel=self.cancel,
+            **self.settings.trajectory_arguments(request.algorithm, goal_is_moved=moved),
+        )
+
+    def _time_left(self) -> float:
+        """Return the time that a search gets [s]."""
+        return max(self.deadline - working_time(), SHORTEST_TIME)
 
     def _check_time(self) -> None:
         """Raise Refusal (CANCELLED, TIMEOUT) when the request has to end."""
         if self.cancel.is_set():
             raise Refusal(Outcome.CANCELLED, 'the request was cancelled after the search')
-        if time.monotonic() >= self.deadline:
+        if working_time() >= self.deadline:
             raise Refusal(
                 Outcome.TIMEOUT,
                 f'the time limit of {self.settings.time_limit:g} s passed after the search, '
                 'before its trajectory was a path',
             )
-
-
-def _led_out(result: PlanResult, start: tuple[float, float], escape: float) -> PlanResult:
-    """Return a result whose path, if any, begins with the way out of ``start``."""
-    if result.status is not PlannerStatus.SOLVED:
-        return result
-    path = np.vstack([np.array(start), result.path])
-    return replace(result, path=path, length=result.length + escape)
 
 
 def _is_still_free(response: PlanResponse, newer: MapSnapshot) -> bool:
@@ -262,6 +261,6 @@ def _is_still_free(response: PlanResponse, newer: MapSnapshot) -> bool:
     # The way out of a blocked start must still be the shortest one.
     if response.escape == 0.0:
         return True
-    start, goal = response.request.start.point, response.request.goal.point
-    outside = escape_point(newer, start, goal, 2.0 * response.escape)
+    start, goal = np.array(response.request.start.point), np.array(response.request.goal.point)
+    outside = escape_point(newer.space, start, goal, 2.0 * response.escape)
     return outside is not None and np.array_equal(outside, response.path[1])

@@ -4,7 +4,8 @@ from abc import ABC, abstractmethod
 from dataclasses import dataclass, field
 import math
 
-from hnr_planner.core import FreeSpaceDraws, PlanResult
+from hnr_planner.core import FreeSpaceDraws
+from hnr_planner.core.planning.result import SearchResult
 from hnr_planner.core.systems import Trajectory
 from hnr_planner.server.map_store import MapSnapshot
 from hnr_planner.server.orientations import LEVEL, normalised, Quaternion
@@ -69,7 +70,7 @@ class PlanResponse(Response):
     ----------
     request : PlanRequest
         The request; in the map's frame once something was planned.
-    result : PlanResult, optional
+    result : SearchResult, optional
         What the planner returned; None when nothing was planned.
     poses : (n, 7)
         Poses along the path: x, y, z [m] and the quaternion x, y, z, w; none unless solved.
@@ -86,7 +87,7 @@ class PlanResponse(Response):
     """
 
     request: PlanRequest
-    result: PlanResult | None = None
+    result: SearchResult | None = None
     poses: NDArray[np.float64] = field(default_factory=lambda: np.empty((0, 7)))
     trajectory: Trajectory | None = None
     clearance: float = math.nan
@@ -146,16 +147,15 @@ class PlanResponse(Response):
             values |= self._search_values(self.result)
         return values
 
-    def _search_values(self, result: PlanResult) -> dict[str, str]:
+    def _search_values(self, result: SearchResult) -> dict[str, str]:
         first = result.first_solution
-        first_time, first_length = (math.nan, math.nan) if first is None else first[:2]
         return {
             'seed': str(result.seed),
             'iterations': str(result.iterations),
             'samples': str(len(result.samples)),
             'planning_time': f'{result.elapsed:.6f}',
-            'first_solution_time': f'{first_time:.6f}',
-            'first_solution_length': f'{first_length:.6g}',
+            'first_solution_time': f'{first.elapsed if first else math.nan:.6f}',
+            'first_solution_length': f'{first.length if first else math.nan:.6g}',
             'length': f'{result.length if self.solved else math.nan:.6g}',
             'cut_by_time': str(bool(result.cut_by_time)).lower(),
         }

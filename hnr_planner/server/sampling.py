@@ -5,6 +5,7 @@ import threading
 import time
 
 from hnr_planner.core import Cancelled, FreeSpaceDraws, sample_free_space, SpaceError, StuckError
+from hnr_planner.core.kernels.clock import working_time
 from hnr_planner.server.map_store import MapSnapshot
 from hnr_planner.server.outcomes import Outcome, Refusal
 from hnr_planner.server.responses import SampleResponse
@@ -26,11 +27,11 @@ def draw(settings: Settings, newest_map: NewestMap, cancel: threading.Event) -> 
         Ends the work when it is set.
 
     """
-    began = time.monotonic()
+    began, deadline = time.monotonic(), working_time() + settings.time_limit
     snapshot = None
     try:
         snapshot = wait_for_map(newest_map, settings.patience, cancel)
-        draws = _draw(settings, snapshot, _Ending(cancel, began + settings.time_limit))
+        draws = _draw(settings, snapshot, _Ending(cancel, deadline))
         why = f'{_description(settings)} by {settings.sample_walk}, seed {draws.seed}'
         response = SampleResponse(Outcome.SAMPLED, why, settings, draws, snapshot=snapshot)
     except Refusal as refusal:
@@ -46,7 +47,7 @@ class _Ending:
     deadline: float
 
     def is_set(self) -> bool:
-        return self.cancel.is_set() or time.monotonic() >= self.deadline
+        return self.cancel.is_set() or working_time() >= self.deadline
 
 
 def _draw(settings: Settings, snapshot: MapSnapshot, ending: _Ending) -> FreeSpaceDraws:

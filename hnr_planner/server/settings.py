@@ -232,28 +232,35 @@ class Settings:
             'occupied_threshold': self.occupied_threshold,
         }
 
-    def motion_arguments(self, algorithm: str) -> dict[str, Any]:
-        """Return the further arguments of ``plan`` for a robot with inertia."""
-        system = DoubleIntegrator(
+    @property
+    def system(self) -> DoubleIntegrator:
+        """Return the robot with inertia."""
+        return DoubleIntegrator(
             dim=2, max_acceleration=self.max_acceleration, max_speed=self.max_speed
         )
-        samples_goal = self.needs_region(algorithm)
+
+    def trajectory_arguments(self, algorithm: str, *, goal_is_moved: bool) -> dict[str, Any]:
+        """Return the arguments of ``plan_trajectory`` but for the time that is left."""
+        # A planner that draws states never draws the goal itself, nor one at rest.
+        samples_goal = KINODYNAMIC_PLANNERS[algorithm].samples_goal
         unbounded = self.goal_speed < 0.0 or (self.goal_speed == 0.0 and samples_goal)
         arguments = {
-            'system': system,
+            **self._search_arguments,
             'goal_speed': math.inf if unbounded else self.goal_speed,
         }
-        return {**arguments, 'boundary': self.boundary} if samples_goal else arguments
-
-    @staticmethod
-    def needs_region(algorithm: str) -> bool:
-        """Return whether a planner never ends exactly at the goal, but in a region around it."""
-        planner = KINODYNAMIC_PLANNERS.get(algorithm)
-        return planner is not None and bool(planner.samples_goal)
+        if samples_goal:
+            return {**arguments, 'boundary': self.boundary}
+        # A goal that was moved already would be moved once more by a region around it.
+        return {**arguments, 'goal_radius': 0.0} if goal_is_moved else arguments
 
     @property
     def plan_arguments(self) -> dict[str, Any]:
         """Return the arguments of ``plan`` but for the time that is left."""
+        return {**self._search_arguments, 'start_escape': self.escape_radius}
+
+    @property
+    def _search_arguments(self) -> dict[str, Any]:
+        """Return the arguments that ``plan`` and ``plan_trajectory`` share."""
         return {
             'goal_radius': self.goal_radius,
             'max_iterations': self.max_iterations or None,

@@ -3,7 +3,7 @@
 import enum
 from typing import NamedTuple
 
-from hnr_planner.core import PlanResult
+from hnr_planner.core.planning.result import SearchResult
 from hnr_planner.server.responses import PlanResponse
 from hnr_planner.server.subsample import subsample_tree
 import numpy as np
@@ -57,7 +57,7 @@ def search_shapes(response: PlanResponse) -> list[Shape]:
     ]
 
 
-def _result_shapes(result: PlanResult, cell: float) -> list[Shape]:
+def _result_shapes(result: SearchResult, cell: float) -> list[Shape]:
     """Return the samples, the edges between them and the path."""
     samples, parents = result.samples, result.parents
     dots = subsample_tree(parents, MOST_POINTS)

@@ -40,4 +40,5 @@ def joined(results: Sequence[PlanResult]) -> PlanResult:
         elapsed=sum(result.elapsed for result in results),
         cut_by_time=any(result.cut_by_time for result in results),
         first_solution=None,
+        goal_offset=results[-1].goal_offset,
     )
