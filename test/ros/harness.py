@@ -45,15 +45,16 @@ LATCHED = QoSProfile(
     reliability=ReliabilityPolicy.RELIABLE,
 )
 MANY = QoSProfile(depth=1000)
+
+#: Longest time [s] that anything here may take to happen.
 SOON = 20.0
-"""Longest time [s] that anything here may take to happen."""
 
 
 def until(
     condition: Callable[[], Any], what: str | Callable[[], str], timeout: float = SOON
 ) -> Any:
     """
-    Return the first true value of `condition`, or fail saying `what` did not happen.
+    Return the first true value of ``condition``, or fail saying ``what`` did not happen.
 
     A callable is asked for its words when they are needed, so that they tell the end.
     """
@@ -67,7 +68,7 @@ def until(
 
 
 class NodeProcess:
-    """A node in a process of its own; `log` is all that it has printed so far."""
+    """A node in a process of its own; ``log`` is all that it has printed so far."""
 
     def __init__(self, module: str, log: Path, parameters: dict[str, Any], *arguments: str):
         settings = [
@@ -94,7 +95,7 @@ class NodeProcess:
         return self._log.read_text()
 
     def wait_for(self, text: str, timeout: float = 120.0) -> None:
-        """Wait until `text` is on the log."""
+        """Wait until ``text`` is on the log."""
         until(
             lambda: text in self.log or self.popen.poll() is not None,
             lambda: f'"{text}" on the log:\n{self.log}',
@@ -125,7 +126,7 @@ def _yaml(value: Any) -> str:
 def node_process(
     module: str, log: Path, ready: str = 'ready', *arguments: str, **parameters: Any
 ) -> Iterator[NodeProcess]:
-    """Run a node for the length of a `with` block, from when it says that it is ready."""
+    """Run a node for the length of a ``with`` block, from when it says that it is ready."""
     process = NodeProcess(module, log, parameters, *arguments)
     try:
         process.wait_for(ready)
@@ -161,7 +162,7 @@ def maze(rows: int = 401, cols: int = 401, gap: int = 1) -> np.ndarray:
 
 
 def from_corner(origin: tuple[float, float, float], x: float, y: float) -> tuple[float, float]:
-    """Return the point that is `x` and `y` metres from a map's corner along its sides."""
+    """Return the point that is ``x`` and ``y`` metres from a map's corner along its sides."""
     z = complex(x, y) * np.exp(1j * origin[2])
     return origin[0] + float(z.real), origin[1] + float(z.imag)
 
@@ -221,8 +222,8 @@ def points_in(cloud: PointCloud2) -> np.ndarray:
     return np.frombuffer(cloud.data.tobytes(), dtype=layout)
 
 
+#: What a request was answered with: a path, or that there are draws.
 Answer = PathMessage | Trigger.Response
-"""What a request was answered with: a path, or that there are draws."""
 
 
 class Client:

@@ -143,8 +143,8 @@ def test_cloud_without_a_result_is_empty_and_well_formed() -> None:
     assert (cloud.width, len(cloud.data), cloud.point_step) == (0, 0, LAYOUT.itemsize)
 
 
+#: Names of all lengths modulo eight: what follows them in a message moves with them.
 FRAMES = ['', 'a', 'ab', 'map', 'odom', 'floor', 'world', 'robot_1/map', 'карта']
-"""Names of all lengths modulo eight: what follows them in a message moves with them."""
 
 
 @pytest.mark.parametrize('frame', FRAMES)

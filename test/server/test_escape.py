@@ -11,8 +11,9 @@ import pytest
 
 CELL = 0.1
 LED_OUT = replace(SETTINGS, escape_radius=0.5, robot_radius=0.2)
+
+#: In the last column before the wall of ``rooms``, so within the robot's radius of it.
 NEAR_WALL = (1.85, 0.55)
-"""In the last column before the wall of ``rooms``, so within the robot's radius of it."""
 
 
 def test_start_near_a_wall_is_led_out_and_the_words_say_so() -> None:

@@ -20,10 +20,13 @@ import numpy as np
 import pytest
 
 RESOLUTION = 0.1
+
+#: Seen from the door, but not from where the paths start.
 GOAL = (3.5, 0.3)
-"""Seen from the door, but not from where the paths start."""
+
+#: Seconds that a busy machine may take longer than a time limit.
 SLACK = 5.0
-"""Seconds that a busy machine may take longer than a time limit."""
+
 SETTINGS = replace(
     DEFAULTS, seed=7, algorithm='rrt', optimize_for=0.0, time_limit=600.0, map_wait=0.0
 )
@@ -313,7 +316,7 @@ def test_cancelled_search_is_named() -> None:
 
 
 class ChangingMap:
-    """The map in use, which another one replaces after it was read `reads` times."""
+    """The map in use, which another one replaces after it was read ``reads`` times."""
 
     def __init__(self, maps: MapStore, later: np.ndarray, frame: str = 'map', reads: int = 1):
         self._maps, self._later, self._frame, self._reads = maps, later, frame, reads

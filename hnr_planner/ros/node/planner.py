@@ -183,6 +183,6 @@ class PlannerNode(ManagedNode):
         """End all running searches."""
         count = self._server.searches.cancel()
         response.success = True
-        response.message = f'{count} running search{"" if count == 1 else "es"} told to end'
+        response.message = f'{count} running search{"" if count == 1 else "es"} cancelled'
         self.get_logger().info(f'cancel: {response.message}')
         return response
