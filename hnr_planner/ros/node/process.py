@@ -18,7 +18,8 @@ import traceback
 from types import FrameType
 from typing import TypeVar
 
-from hnr_planner.core import HnrError
+from hnr_planner.core.errors import HnrError
+from hnr_planner.ros.node.memory import give_back_large_blocks
 import rclpy
 from rclpy.exceptions import ParameterException
 from rclpy.executors import MultiThreadedExecutor
@@ -57,6 +58,7 @@ def run(
         Ends the node's running callbacks.
 
     """
+    give_back_large_blocks()
     stop = _StopSignal()
     logger = get_logger(name)
     if prepare is not None:
