@@ -6,11 +6,14 @@ from test.ros.harness import points_in, set_field
 
 from builtin_interfaces.msg import Time
 from hnr_planner.core import GridSpace, plan
+from hnr_planner.core.systems import DoubleIntegrator, Trajectory
 from hnr_planner.maps import OccupancyMap
 from hnr_planner.ros.messages.maps import map_from_message, message_from_map
 from hnr_planner.ros.messages.markers import serialised_markers
 from hnr_planner.ros.messages.paths import path_message, serialised_path
 from hnr_planner.ros.messages.samples import LAYOUT, samples_message
+from hnr_planner.ros.messages.serialised_response import PlanResponses
+from hnr_planner.ros.messages.trajectories import serialised_trajectory
 from hnr_planner.server.map_store import MapSnapshot
 from hnr_planner.server.outcomes import Outcome
 from hnr_planner.server.received_maps import as_written, MapError
@@ -19,10 +22,12 @@ from hnr_planner.server.responses import PlanResponse
 from hnr_planner.server.shapes import MOST_POINTS
 from nav_msgs.msg import OccupancyGrid
 from nav_msgs.msg import Path as PathMessage
+from nav_msgs.srv import GetPlan
 import numpy as np
 import pytest
-from rclpy.serialization import deserialize_message
+from rclpy.serialization import deserialize_message, serialize_message
 from std_msgs.msg import Header
+from trajectory_msgs.msg import MultiDOFJointTrajectory
 from visualization_msgs.msg import Marker, MarkerArray
 
 STAMP = Time(sec=12, nanosec=34)
@@ -159,6 +164,65 @@ def test_path_from_arrays_is_the_path_of_the_answer(frame: str, n_poses: int) ->
     for pose, row in zip(path.poses, rows.tolist(), strict=True):
         place, turn = pose.pose.position, pose.pose.orientation
         assert [place.x, place.y, place.z, turn.x, turn.y, turn.z, turn.w] == row
+
+
+@pytest.mark.parametrize('frame', FRAMES)
+@pytest.mark.parametrize('n_poses', [0, 2, 3, 500])
+def test_response_from_bytes_is_the_ordinary_one(frame: str, n_poses: int) -> None:
+    rows = np.random.default_rng(n_poses).normal(size=(n_poses, 7))
+    header = Header(stamp=STAMP, frame_id=frame)
+    responses = PlanResponses()
+    assert responses.why_slow == ''
+    made = responses.make(rows, header)
+    assert isinstance(made, GetPlan.Response) and made.plan.poses == [], 'no object for a pose'
+    sent = deserialize_message(serialize_message(made), GetPlan.Response)
+    assert sent == GetPlan.Response(plan=path_message(rows, header))
+
+
+def test_response_is_the_ordinary_one_where_bytes_do_not_work() -> None:
+    responses = PlanResponses()
+    responses.why_slow = 'another rclpy'
+    rows = np.random.default_rng(0).normal(size=(3, 7))
+    assert responses.make(rows, HEADER).plan == path_message(rows, HEADER)
+
+
+def trajectory(n_points: int) -> Trajectory:
+    """Return a trajectory with some random points; the first ones are at rest."""
+    rng = np.random.default_rng(n_points)
+    states = rng.normal(size=(n_points, 4))
+    states[:2, 2:] = 0.0
+    return Trajectory(
+        DoubleIntegrator(dim=2),
+        np.cumsum(rng.random(n_points)),
+        states,
+        rng.normal(size=(n_points - 1, 2)),
+    )
+
+
+@pytest.mark.parametrize('frame', FRAMES)
+@pytest.mark.parametrize('n_points', [2, 3, 50])
+def test_trajectory_has_a_point_for_each_state(frame: str, n_points: int) -> None:
+    made, header = trajectory(n_points), Header(stamp=STAMP, frame_id=frame)
+    message = deserialize_message(serialised_trajectory(made, header), MultiDOFJointTrajectory)
+    assert message.header == header and message.joint_names == ['base']
+    assert len(message.points) == n_points
+    for k, point in enumerate(message.points):
+        (place,), (speed,), (pull,) = point.transforms, point.velocities, point.accelerations
+        state = [place.translation.x, place.translation.y, speed.linear.x, speed.linear.y]
+        assert state == made.states[k].tolist()
+        control = made.controls[k] if k < n_points - 1 else np.zeros(2)
+        assert [pull.linear.x, pull.linear.y] == control.tolist()
+        time = point.time_from_start
+        assert time.sec + 1e-9 * time.nanosec == pytest.approx(made.times[k], abs=1e-9)
+        way = made.states[k, 2:] if k >= 2 else control
+        if way.any():
+            yaw = 2.0 * math.atan2(place.rotation.z, place.rotation.w)
+            assert math.cos(yaw - math.atan2(way[1], way[0])) == pytest.approx(1.0)
+
+
+def test_no_trajectory_has_no_points() -> None:
+    message = deserialize_message(serialised_trajectory(None, HEADER), MultiDOFJointTrajectory)
+    assert message.points == [] and message.header == HEADER
 
 
 @pytest.mark.parametrize('frame', FRAMES)

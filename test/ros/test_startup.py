@@ -1,4 +1,4 @@
-"""The start of a real node: help, parameters, warnings, the first map, and the lines of its log."""
+"""The start of a real node: help, parameters, warnings, the first map, and its log."""
 
 from collections.abc import Iterator
 from pathlib import Path

@@ -12,7 +12,7 @@ from typing import Any
 from builtin_interfaces.msg import Duration
 from geometry_msgs.msg import PoseStamped
 from hnr_planner.ros.interfaces.request_server import RequestServer
-from hnr_planner.ros.messages.paths import points_from_path, pose_from_message
+from hnr_planner.ros.messages.paths import path_message, points_from_path, pose_from_message
 from hnr_planner.server.nav2 import error_name, goal_request, robot_pose
 from hnr_planner.server.outcomes import Refusal
 from hnr_planner.server.path_validity import judge_path
@@ -22,12 +22,12 @@ from hnr_planner.server.respond import ToFrame
 from hnr_planner.server.responses import PlanResponse
 from hnr_planner.server.settings import Settings
 from hnr_planner.server.waiting import NewestMap
-from nav_msgs.msg import Path
 from rclpy.action import ActionServer, CancelResponse
 from rclpy.action.server import ServerGoalHandle
 from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.duration import Duration as RclpyDuration
 from rclpy.node import Node
+from std_msgs.msg import Header
 
 try:
     from nav2_msgs.action import ComputePathThroughPoses, ComputePathToPose
@@ -191,7 +191,9 @@ class _Action:
         """Plan for a goal, bring it to its end and return its result."""
         goal = self._goals[_key(handle)]
         handle.publish_feedback(self._kind.Feedback())
-        response, path = self._server.plan(self._name, self._request(handle.request), goal.cancel)
+        response, header = self._server.plan(
+            self._name, self._request(handle.request), goal.cancel
+        )
         self._server.response_sent()  # the result leaves when this returns
         with self._one_at_a_time:
             del self._goals[_key(handle)]
@@ -203,7 +205,7 @@ class _Action:
             handle.succeed()
         else:
             handle.abort()
-        return self._result(response, path, goal.preempted)
+        return self._result(response, header, goal.preempted)
 
     def _request(self, goal: Any) -> PlanRequest:
         """Return the request that a goal stands for."""
@@ -211,8 +213,9 @@ class _Action:
         poses = [pose_from_message(pose) for pose in self._poses_of(goal)]
         return goal_request(start, poses, goal.planner_id, self._settings())
 
-    def _result(self, response: PlanResponse, path: Path, preempted: bool) -> Any:
+    def _result(self, response: PlanResponse, header: Header, preempted: bool) -> Any:
         """Return the result of a goal."""
+        path = path_message(response.poses, header)
         result = self._kind.Result(path=path, planning_time=_duration(response.elapsed))
         result.error_code = getattr(result, error_name(response))
         if not response.solved:

@@ -8,7 +8,7 @@ from typing import Any
 from hnr_planner.ros.messages.markers import serialised_markers
 from hnr_planner.ros.messages.paths import serialised_path
 from hnr_planner.ros.messages.samples import draws_message, samples_message
-from hnr_planner.ros.messages.trajectories import trajectory_message
+from hnr_planner.ros.messages.trajectories import serialised_trajectory
 from hnr_planner.server.request_log import LogEntry
 from hnr_planner.server.responses import PlanResponse, Response, SampleResponse
 from nav_msgs.msg import Path
@@ -79,7 +79,7 @@ class PlanPublication(Publication):
     def messages(self) -> Messages:
         """Yield path and trajectory."""
         yield 'path', serialised_path(self.response.poses, self.header)
-        yield 'trajectory', trajectory_message(self.response, self.header)
+        yield 'trajectory', serialised_trajectory(self.response.trajectory, self.header)
 
     def pictures(self) -> Messages:
         """Yield samples and markers."""

@@ -7,7 +7,6 @@ from typing import NamedTuple
 from builtin_interfaces.msg import Time
 from hnr_planner.ros.interfaces.publications import PlanPublication, SamplePublication
 from hnr_planner.ros.interfaces.publisher import latched, Publisher
-from hnr_planner.ros.messages.paths import path_message
 from hnr_planner.server.path_monitor import PathMonitor
 from hnr_planner.server.planning_server import PlanningServer
 from hnr_planner.server.request_log import RequestLog
@@ -16,7 +15,6 @@ from hnr_planner.server.respond import ToFrame
 from hnr_planner.server.responses import PlanResponse, SampleResponse
 from hnr_planner.server.settings import Settings
 from hnr_planner.server.waiting import NewestMap
-from nav_msgs.msg import Path
 from rclpy.node import Node
 from std_msgs.msg import Bool, Header
 
@@ -25,10 +23,10 @@ PATH_VALID = 'path_valid'
 
 
 class Planned(NamedTuple):
-    """A response, and its path as a message: stamped, empty after a failure."""
+    """A response, and the header of its path: stamped, also after a failure."""
 
     response: PlanResponse
-    path: Path
+    header: Header
 
 
 class Sampled(NamedTuple):
@@ -92,7 +90,6 @@ class RequestServer:
         settings = self._settings()
         response = self._server.plan(request, cancel)
         header = Header(frame_id=response.frame)
-        path = path_message(response.poses, header)
         remark = ''
         if request.omits_start:
             remark = 'the start is (0, 0) in no frame, as if left out: taken literally'
@@ -102,7 +99,7 @@ class RequestServer:
                 PlanPublication(caller, response, header, log, settings.samples_max)
             )
             self.path_monitor.follow(response)
-        return Planned(response, path)
+        return Planned(response, header)
 
     def sample(self, caller: str) -> Sampled:
         """

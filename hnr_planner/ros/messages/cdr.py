@@ -8,6 +8,7 @@ way, and the bytes of the array are spliced in. ``test/ros/test_messages.py`` co
 
 from collections.abc import Sequence
 import math
+from typing import Any
 
 from geometry_msgs.msg import Point
 import numpy as np
@@ -46,28 +47,31 @@ def with_points(serialised: bytes, arrays: Sequence[NDArray[np.float64]]) -> byt
     return b''.join([*pieces, serialised[done:]])
 
 
-def with_poses(short: Sequence[bytes], rows: NDArray[np.float64]) -> bytes:
+def with_elements(short: Sequence[bytes], fields: Sequence[tuple[int, NDArray[Any]]]) -> bytes:
     """
-    Return a serialised message that ends with stamped poses, given three short forms of it.
+    Return a serialised message that ends with a long sequence, given three short forms of it.
 
     Parameters
     ----------
     short : three of bytes
-        The message (such as ``nav_msgs/Path``) with the first 0, 1 and 2 of the poses; its last
-        field is the sequence of ``PoseStamped``, all with the same header.
-    rows : (n, 7)
-        All poses: x, y, z and the quaternion x, y, z, w.
+        The message with the first 0, 1 and 2 elements of the sequence, which is its last field. An
+        element has a fixed size, a multiple of eight bytes, from the second one on.
+    fields : sequence of (int, (n, k))
+        What differs from element to element: where it begins, in bytes before the element's end,
+        and its numbers for each element, in the type of the message.
 
     """
-    if len(rows) < len(short):
-        return short[len(rows)]
+    count = len(fields[0][1])
+    if count < len(short):
+        return short[count]
     none, one, two = short
-    # From the second pose on all take equally many bytes, the last 56 of them seven numbers.
     n_none, n_one = len(none), len(one)
-    others = np.tile(np.frombuffer(two[n_one:], dtype=np.uint8), (len(rows) - 1, 1))
-    numbers = np.ascontiguousarray(rows[1:]).view(np.uint8)
-    place = others.shape[1] - numbers.shape[1]
-    others[:, place:] = numbers
-    # A message without poses ends with their number, in four bytes.
-    length = np.uint32(len(rows)).tobytes()
+    others = np.tile(np.frombuffer(two[n_one:], dtype=np.uint8), (count - 1, 1))
+    for before_end, numbers in fields:
+        data = np.ascontiguousarray(numbers[1:]).view(np.uint8)
+        begin = others.shape[1] - before_end
+        end = begin + data.shape[1]
+        others[:, begin:end] = data
+    # A message without elements ends with their number, in four bytes.
+    length = np.uint32(count).tobytes()
     return b''.join([none[:-4], length, one[n_none:], others.tobytes()])

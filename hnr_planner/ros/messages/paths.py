@@ -1,7 +1,7 @@
 """``nav_msgs/GetPlan`` and ``nav_msgs/Path``: to requests, and from poses."""
 
 from geometry_msgs.msg import PoseStamped
-from hnr_planner.ros.messages.cdr import with_poses
+from hnr_planner.ros.messages.cdr import with_elements
 from hnr_planner.server.received_maps import as_written
 from hnr_planner.server.requests import PlanRequest, Pose
 from nav_msgs.msg import Path
@@ -51,7 +51,8 @@ def path_message(rows: NDArray[np.float64], header: Header) -> Path:
 def serialised_path(rows: NDArray[np.float64], header: Header) -> bytes:
     """Return poses (n, 7) as a message in its serialised form."""
     short = [serialize_message(path_message(rows[:n_poses], header)) for n_poses in range(3)]
-    return with_poses(short, rows)
+    # A pose ends with its seven numbers.
+    return with_elements(short, [(56, rows)])
 
 
 def _stamped(row: list[float], header: Header) -> PoseStamped:

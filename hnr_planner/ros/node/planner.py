@@ -9,6 +9,7 @@ from hnr_planner.ros.interfaces.request_server import RequestServer
 from hnr_planner.ros.interfaces.rviz_tools import RvizTools
 from hnr_planner.ros.map.map_input import MapInput
 from hnr_planner.ros.messages.paths import request_from_message
+from hnr_planner.ros.messages.serialised_response import PlanResponses
 from hnr_planner.ros.node.bond import NodeBond
 from hnr_planner.ros.node.callback_group import BoundedCallbackGroup
 from hnr_planner.ros.node.managed_node import ManagedNode
@@ -61,6 +62,10 @@ class PlannerNode(ManagedNode):
         self._server = RequestServer(
             self, lambda: self.settings, self._newest_map, self._to_frame_of_map
         )
+        self._responses = PlanResponses()
+        if self._responses.why_slow:
+            why = self._responses.why_slow
+            self.get_logger().warning(f'responses are built pose by pose, which is slow: {why}')
         self._health = Health(self, self._find_map_input, self._server)
         searches = BoundedCallbackGroup(MOST_SEARCHES, self._server.response_sent)
         for name, algorithm in SERVICES.items():
@@ -163,12 +168,12 @@ class PlannerNode(ManagedNode):
         service: str,
         algorithm: str | None,
         message: GetPlan.Request,
-        response: GetPlan.Response,
+        _response: GetPlan.Response,
     ) -> GetPlan.Response:
         """Respond to one request for a path."""
         request = request_from_message(message, algorithm or self.settings.algorithm)
-        response.plan = self._server.plan(service, request).path
-        return response
+        planned = self._server.plan(service, request)
+        return self._responses.make(planned.response.poses, planned.header)
 
     def _sample(self, _request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
         """Draw the free space; the response has the outcome and the stamp of the draws."""
