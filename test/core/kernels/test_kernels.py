@@ -156,10 +156,12 @@ def test_hit_and_run_connect():
     outcomes = []
     for begin in (connect._begin, interpreted(connect._begin)):
         with np.errstate(over='ignore'):
-            trees, _, done = begin(PROBLEM, stream(5), 120)
-        rows = int(trees.sizes.sum())
+            trees, done = begin(PROBLEM, stream(5), 120)
+        rows = int(trees.table.sizes.sum())
         assert rows > 10
-        outcomes.append([done[0], done[1:], trees.vertices[:rows], trees.parents[:rows]])
+        outcomes.append(
+            [done[0], done[1:], trees.table.vertices[:rows], trees.table.parents[:rows]]
+        )
     assert_same(*outcomes)
 
 
@@ -192,7 +194,7 @@ def test_alternatives():
 
 @pytest.mark.filterwarnings('ignore:overflow')
 def test_stand_off():
-    wish = stand_off.wish_for(GRID, 0.2)
+    wish = stand_off.clearance_cost(GRID, 0.2)
     islands = islands_at(GRID.island_points)
     spread = both(stand_off.spread, wish, zigzag()[:20])
     assert_same(*spread)
