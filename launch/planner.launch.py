@@ -1,11 +1,12 @@
 """
-Start the planner, a map source if a map is named, and RViz if it is wished.
+Start the planner; with ``map`` a map source too, and with ``rviz:=true`` RViz.
 
     ros2 launch hnr_planner planner.launch.py map:=/path/to/map.yaml rviz:=true
 
-Without ``map`` the planner listens to the topic ``map`` of a map server that runs already. No
+Without ``map`` the planner takes the topic ``map`` of a map server that runs already. No
 transition is sent from here: with ``autostart`` the planner activates itself, without it waits for
-a lifecycle manager.
+a lifecycle manager. Transforms are taken from ``tf`` and ``tf_static`` of the namespace, as in
+nav2_bringup.
 """
 
 from launch import LaunchDescription
@@ -21,7 +22,10 @@ from launch_ros.actions import Node
 from launch_ros.parameter_descriptions import ParameterValue
 from launch_ros.substitutions import FindPackageShare
 
+#: The folder of the configuration.
 CONFIG = PathJoinSubstitution([FindPackageShare('hnr_planner'), 'config'])
+
+#: Name, default and description.
 ARGUMENTS = (
     ('map', '', 'Map file (YAML) to publish; empty for none.'),
     (
@@ -39,8 +43,11 @@ ARGUMENTS = (
         'Plan where the click tools of RViz say; as rviz if not given.',
     ),
 )
-"""Name, default and description."""
 
+#: Transforms of a robot in a namespace are in it too.
+TRANSFORMS = [('/tf', 'tf'), ('/tf_static', 'tf_static')]
+
+#: Topics that the layout of RViz names; they follow the namespace.
 IN_LAYOUT = (
     '/map',
     '/map_updates',
@@ -50,7 +57,6 @@ IN_LAYOUT = (
     '/hnr_planner/markers',
     '/hnr_planner/path',
 )
-"""Topics that the layout of RViz names; they follow the namespace."""
 
 
 def generate_launch_description() -> LaunchDescription:
@@ -76,6 +82,7 @@ def generate_launch_description() -> LaunchDescription:
                     LaunchConfiguration('params_file'),
                     _booleans('use_sim_time', 'autostart', 'rviz_clicks'),
                 ],
+                remappings=TRANSFORMS,
                 additional_env={profile: EnvironmentVariable(profile, default_value=our_profile)},
                 output='screen',
             ),
@@ -97,7 +104,7 @@ def generate_launch_description() -> LaunchDescription:
                 namespace=namespace,
                 arguments=['-d', PathJoinSubstitution([CONFIG, 'hnr_planner.rviz'])],
                 parameters=[_booleans('use_sim_time')],
-                remappings=[(topic, topic.lstrip('/')) for topic in IN_LAYOUT],
+                remappings=[*TRANSFORMS, *((topic, topic.lstrip('/')) for topic in IN_LAYOUT)],
                 output='screen',
                 condition=IfCondition(LaunchConfiguration('rviz')),
             ),
@@ -106,5 +113,5 @@ def generate_launch_description() -> LaunchDescription:
 
 
 def _booleans(*names: str) -> dict[str, ParameterValue]:
-    """Return parameters that have the name and the value of a launch argument each."""
+    """Return parameters, each with the name and the value of a launch argument."""
     return {name: ParameterValue(LaunchConfiguration(name), value_type=bool) for name in names}

@@ -1,4 +1,4 @@
-"""The occupancy grid that map files hold and that planners are given."""
+"""The occupancy grid that map files hold, that nodes receive, and that planners are given."""
 
 from __future__ import annotations
 
@@ -24,9 +24,26 @@ class OccupancyMap:
         Side of a cell [m].
     origin : (x, y, yaw)
         Pose of the outer corner of cell [0, 0] in the map frame [m, m, rad].
+    frame : str
+        Name of the map frame.
 
     """
 
     data: NDArray[np.int8]
     resolution: float
     origin: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    frame: str = 'map'
+
+    def is_same_as(self, other: OccupancyMap | None) -> bool:
+        """Return whether another map has the same cells at the same place in the same frame."""
+        return (
+            other is not None
+            and (self.resolution, self.origin, self.frame)
+            == (other.resolution, other.origin, other.frame)
+            and np.array_equal(self.data, other.data)
+        )
+
+    def __str__(self) -> str:
+        """Return size, resolution and frame in words."""
+        rows, cols = self.data.shape
+        return f"{cols} x {rows} cells of {self.resolution:g} m in frame '{self.frame}'"

@@ -2,7 +2,7 @@
 The map in use: the last good one that arrived, prepared as a space.
 
 Maps and changed parameters come from one thread at a time, requests from many. A request takes
-a `MapSnapshot`, which never changes, and so a new map cannot disturb a search.
+a ``MapSnapshot``, which never changes, and so a new map cannot disturb a search.
 """
 
 from collections.abc import Callable
@@ -10,66 +10,24 @@ from dataclasses import dataclass
 import threading
 
 from hnr_planner.core import GridSpace, HnrError
+from hnr_planner.maps import OccupancyMap
 from hnr_planner.server.outcomes import Outcome, Refusal
+from hnr_planner.server.received_maps import MapError
 from hnr_planner.server.settings import Settings
-import numpy as np
-from numpy.typing import NDArray
-
-
-class MapError(HnrError, ValueError):
-    """A map cannot be used: the message says why, and the last good map stays."""
-
-
-@dataclass(frozen=True)
-class Grid:
-    """
-    An occupancy map as it was published.
-
-    Parameters
-    ----------
-    data : (rows, cols) int8
-        -1 unknown, 0 free .. 100 occupied; row 0 lies at the origin.
-    resolution : float
-        Side of a cell [m].
-    origin : (x, y, yaw)
-        Pose of the corner of cell [0, 0] in the map frame [m, m, rad].
-    frame : str
-        Name of the map frame.
-
-    """
-
-    data: NDArray[np.int8]
-    resolution: float
-    origin: tuple[float, float, float]
-    frame: str
-
-    def is_same_as(self, other: 'Grid | None') -> bool:
-        """Return whether another map says the same of every place."""
-        return (
-            other is not None
-            and (self.resolution, self.origin, self.frame)
-            == (other.resolution, other.origin, other.frame)
-            and np.array_equal(self.data, other.data)
-        )
-
-    def __str__(self) -> str:
-        """Return size, resolution and frame in words."""
-        rows, cols = self.data.shape
-        return f"{cols} x {rows} cells of {self.resolution:g} m in frame '{self.frame}'"
 
 
 @dataclass(frozen=True)
 class MapSnapshot:
-    """A map ready for planning; `number` counts the preparations."""
+    """A map ready for planning; ``number`` counts the preparations."""
 
     space: GridSpace
-    grid: Grid
+    occupancy: OccupancyMap
     number: int
 
     @property
     def frame(self) -> str:
         """Return the name of the map frame."""
-        return self.grid.frame
+        return self.occupancy.frame
 
 
 class MapStore:
@@ -77,15 +35,15 @@ class MapStore:
 
     def __init__(self, settings: Settings) -> None:
         self._arguments = settings.space_arguments
-        self._grid: Grid | None = None
+        self._occupancy: OccupancyMap | None = None
         self._snapshot: MapSnapshot | None = None
         self._missing = (Outcome.NO_MAP, 'no map has arrived yet')
         self._prepared = 0
         self._one_at_a_time = threading.Lock()
 
-    def receive(self, read_grid: Callable[[], Grid]) -> MapSnapshot:
+    def receive(self, read_map: Callable[[], OccupancyMap]) -> MapSnapshot:
         """
-        Put the map that `read_grid` returns to use and return it as a space.
+        Put the map that ``read_map`` returns into use and return it as a space.
 
         One that is the same as the map in use is not prepared again.
 
@@ -99,11 +57,11 @@ class MapStore:
             try:
                 if self._snapshot is None:
                     self._missing = (Outcome.MAP_NOT_READY, 'a map is just being prepared')
-                grid = read_grid()
-                if self._snapshot is not None and grid.is_same_as(self._grid):
+                occupancy = read_map()
+                if self._snapshot is not None and occupancy.is_same_as(self._occupancy):
                     return self._snapshot
-                self._snapshot = self._prepare(grid)
-                self._grid = grid
+                self._snapshot = self._prepare(occupancy)
+                self._occupancy = occupancy
                 return self._snapshot
             except Exception as error:  # a map must never take the node down
                 why = _in_words(error)
@@ -115,7 +73,7 @@ class MapStore:
 
     def use(self, settings: Settings) -> MapSnapshot | None:
         """
-        Prepare the map again if `settings` ask for another space; return it if they do.
+        Prepare the map again if ``settings`` ask for another space; return it if they do.
 
         Raises
         ------
@@ -127,7 +85,7 @@ class MapStore:
             if settings.space_arguments == self._arguments:
                 return None
             self._arguments = settings.space_arguments
-            if self._grid is None:
+            if self._occupancy is None:
                 return None
             # The space of the former settings would let the robot through where it does not fit.
             self._missing = (
@@ -136,7 +94,7 @@ class MapStore:
             )
             self._snapshot = None
             try:
-                self._snapshot = self._prepare(self._grid)
+                self._snapshot = self._prepare(self._occupancy)
             except Exception as error:  # a parameter must never take the node down
                 why = f'parameters were changed, but {_in_words(error)}'
                 self._missing = (Outcome.NO_MAP, why)
@@ -149,9 +107,9 @@ class MapStore:
         return self._snapshot
 
     @property
-    def grid(self) -> Grid | None:
+    def occupancy(self) -> OccupancyMap | None:
         """Return the last good map, if there was one."""
-        return self._grid
+        return self._occupancy
 
     def newest(self) -> MapSnapshot:
         """Return the map in use, or raise Refusal (NO_MAP, MAP_NOT_READY)."""
@@ -160,16 +118,16 @@ class MapStore:
             raise Refusal(*self._missing)
         return snapshot
 
-    def _prepare(self, grid: Grid) -> MapSnapshot:
+    def _prepare(self, occupancy: OccupancyMap) -> MapSnapshot:
         space = GridSpace.from_occupancy(
-            grid.data, grid.resolution, grid.origin, **self._arguments
+            occupancy.data, occupancy.resolution, occupancy.origin, **self._arguments
         )
         self._prepared += 1
-        return MapSnapshot(space, grid, self._prepared)
+        return MapSnapshot(space, occupancy, self._prepared)
 
 
 def _in_words(error: Exception) -> str:
-    """Return what is wrong with a map, or what failed while it was prepared."""
+    """Return in words what is wrong with a map, or what failed in its preparation."""
     if isinstance(error, HnrError):
         return str(error)
     return f'preparing the map failed: {type(error).__name__}: {" ".join(str(error).split())}'

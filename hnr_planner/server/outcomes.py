@@ -1,12 +1,12 @@
-"""The names under which a request can end, and the refusal that carries one."""
+"""The names under which a request can end, and the exception that ends it early."""
 
 import enum
 
-from hnr_planner.core import HnrError
+from hnr_planner.core.errors import HnrError
 
 
 class Outcome(enum.Enum):
-    """How a request ended; those that the planner itself decides bear its status' name."""
+    """How a request ended; where the planner decides that, the name is its status' name."""
 
     SOLVED = enum.auto()
     SAMPLED = enum.auto()
@@ -33,7 +33,7 @@ class Outcome(enum.Enum):
 
 
 class Refusal(HnrError):
-    """A request ends before its end: the outcome's name, and why in words."""
+    """A request ends without a result: the name of the outcome, and why in words."""
 
     def __init__(self, outcome: Outcome, why: str) -> None:
         super().__init__(why)

@@ -1,12 +1,13 @@
-"""From the vertices of a path to poses along it, as arrays."""
+"""Poses along a path, as arrays."""
 
 from typing import NamedTuple
 
+from hnr_planner.server.orientations import Quaternion, yaw_of
 import numpy as np
 from numpy.typing import NDArray
 
+#: Most poses of a path. Spacing adds no more than that, and a path with more vertices is refused.
 MOST_POSES = 10_000
-"""Poses added for spacing stop here; vertices are never left out."""
 
 
 class Poses(NamedTuple):
@@ -18,10 +19,10 @@ class Poses(NamedTuple):
 
 def poses_along(path: NDArray[np.float64], spacing: float, final_yaw: float) -> Poses:
     """
-    Return poses at most `spacing` apart that look along the path.
+    Return poses at most ``spacing`` apart that look along the path.
 
     Every vertex is a pose and each segment is cut into equal pieces, so the line through the
-    poses is the path itself. Each pose looks to the next one; the last has `final_yaw`.
+    poses is the path itself. Each pose looks to the next one; the last has ``final_yaw``.
 
     Parameters
     ----------
@@ -29,7 +30,7 @@ def poses_along(path: NDArray[np.float64], spacing: float, final_yaw: float) -> 
         Vertices [m]; none or at least two.
     spacing : float
         Largest distance between poses [m]; 0 for the vertices only. It is widened where it
-        would give more than `MOST_POSES`.
+        would give more than ``MOST_POSES`` besides the vertices.
     final_yaw : float
         Yaw of the last pose, and of all when the path goes nowhere [rad].
 
@@ -47,6 +48,30 @@ def poses_along(path: NDArray[np.float64], spacing: float, final_yaw: float) -> 
     points = path[segment] + fraction * steps[segment]
     yaws = _yaws(steps, lengths, final_yaw)[segment]
     return Poses(np.vstack([points, path[-1]]), np.append(yaws, final_yaw))
+
+
+def pose_rows(
+    path: NDArray[np.float64], spacing: float, goal_orientation: Quaternion
+) -> NDArray[np.float64]:
+    """
+    Return poses along a path as rows (n, 7): x, y, z and the quaternion x, y, z, w.
+
+    Parameters
+    ----------
+    path : (m, 2)
+        Vertices [m]; none or at least two.
+    spacing : float
+        Largest distance between poses [m]; 0 for the vertices only.
+    goal_orientation : Quaternion
+        Of the last pose, with norm 1; roll and pitch are kept.
+
+    """
+    points, yaws = poses_along(path, spacing, yaw_of(goal_orientation))
+    rows = np.zeros((len(points), 7))
+    rows[:, :2] = points
+    rows[:, 5], rows[:, 6] = np.sin(yaws / 2.0), np.cos(yaws / 2.0)
+    rows[-1:, 3:] = goal_orientation
+    return rows
 
 
 def _pieces(lengths: NDArray[np.float64], spacing: float) -> NDArray[np.int64]:

@@ -1,16 +1,18 @@
-"""What is asked of the planner: data, without ROS."""
+"""Requests to the planner as data, and the checks that need no map."""
 
 from dataclasses import dataclass
 import math
 
-from hnr_planner.ros.messages.orientations import LEVEL, normalised, Quaternion
+from hnr_planner.core import KINODYNAMIC_PLANNERS
+from hnr_planner.server.orientations import LEVEL, normalised, Quaternion
 from hnr_planner.server.outcomes import Outcome, Refusal
+from hnr_planner.server.settings import SERVED_ALGORITHMS
 
 
 @dataclass(frozen=True)
 class Pose:
     """
-    A pose as it was asked for.
+    A pose as it was requested.
 
     Parameters
     ----------
@@ -19,7 +21,7 @@ class Pose:
     orientation : Quaternion
         Of any norm.
     frame : str
-        Where it is given; empty for the map's frame.
+        Frame of position and orientation; empty for the map's frame.
     stamp : int
         Time of the frame [ns]; 0 for the latest known.
 
@@ -32,20 +34,31 @@ class Pose:
 
     @property
     def point(self) -> tuple[float, float]:
-        """Return (x, y)."""
+        """Return (x, y) [m]."""
         return self.position[0], self.position[1]
 
 
+#: The start or goal of a request that came without one: NO_START or BAD_REQUEST.
 NOWHERE = Pose((math.nan, math.nan, math.nan))
-"""The start or goal of a request that came without one: NO_START or BAD_REQUEST."""
 
 
 @dataclass(frozen=True)
 class PlanRequest:
     """
-    A path is asked for, through the poses of `via` in their order.
+    A request for a path from ``start`` through the poses of ``via`` to ``goal``.
 
-    `tolerance` [m] is how far from a blocked goal, and from those on the way, it may pass.
+    Parameters
+    ----------
+    start, goal : Pose
+        The ends of the path.
+    tolerance : float
+        How far from a goal that is blocked or unreachable the path may end [m]; it holds for the
+        poses of ``via`` too.
+    algorithm : str
+        One of ``SERVED_ALGORITHMS``.
+    via : tuple of Pose
+        Poses to pass, in their order.
+
     """
 
     start: Pose
@@ -57,7 +70,7 @@ class PlanRequest:
     @property
     def named_poses(self) -> tuple[tuple[str, Pose], ...]:
         """Return all poses, each with its name in words."""
-        via = tuple((f'pose {place} on the way', pose) for place, pose in enumerate(self.via, 1))
+        via = tuple((f'pose {number} on the way', pose) for number, pose in enumerate(self.via, 1))
         return (('start', self.start), *via, ('goal', self.goal))
 
     @property
@@ -65,25 +78,26 @@ class PlanRequest:
         """Return whether the start looks like one that was left out."""
         return self.start.frame == '' and self.start.point == (0.0, 0.0)
 
+    @property
+    def has_inertia(self) -> bool:
+        """Return whether the request is for a robot with inertia."""
+        return self.algorithm in KINODYNAMIC_PLANNERS
+
+    @property
+    def names_a_planner(self) -> bool:
+        """Return whether the algorithm is one that is served for the poses of this request."""
+        return self.algorithm in SERVED_ALGORITHMS and not (self.has_inertia and self.via)
+
 
 def check_request(request: PlanRequest) -> None:
-    """Raise Refusal (NO_START, BAD_REQUEST) when `request` makes no sense on any map."""
+    """Raise Refusal (NO_START, BAD_REQUEST) when ``request`` makes no sense on any map."""
     if request.start is NOWHERE:
         raise Refusal(Outcome.NO_START, 'there is no start yet to plan from')
     if request.goal is NOWHERE:
         raise Refusal(Outcome.BAD_REQUEST, 'there is no goal to plan to')
+    _check_algorithm(request)
     for name, pose in request.named_poses:
-        for part, numbers in (('position', pose.position), ('orientation', pose.orientation)):
-            if not all(math.isfinite(number) for number in numbers):
-                raise Refusal(
-                    Outcome.BAD_REQUEST,
-                    f'the {part} of the {name} must be finite, got {list(numbers)}',
-                )
-        if pose.stamp < 0:
-            raise Refusal(
-                Outcome.BAD_REQUEST,
-                f'the stamp of the {name} must not be negative, got {pose.stamp} ns',
-            )
+        _check_pose(name, pose)
     if normalised(request.goal.orientation) is None:
         raise Refusal(
             Outcome.BAD_REQUEST,
@@ -94,4 +108,29 @@ def check_request(request: PlanRequest) -> None:
         raise Refusal(
             Outcome.BAD_REQUEST,
             f'the tolerance must be finite and not negative, got {request.tolerance} m',
+        )
+
+
+def _check_algorithm(request: PlanRequest) -> None:
+    if request.names_a_planner:
+        return
+    if request.has_inertia:
+        why = f'{request.algorithm} plans from one pose to another, not through poses on the way'
+    else:
+        names = ', '.join(SERVED_ALGORITHMS)
+        why = f'no planner is called {request.algorithm!r}: the names are {names}'
+    raise Refusal(Outcome.BAD_REQUEST, why)
+
+
+def _check_pose(name: str, pose: Pose) -> None:
+    for field, numbers in (('position', pose.position), ('orientation', pose.orientation)):
+        if not all(math.isfinite(number) for number in numbers):
+            raise Refusal(
+                Outcome.BAD_REQUEST,
+                f'the {field} of the {name} must be finite, got {list(numbers)}',
+            )
+    if pose.stamp < 0:
+        raise Refusal(
+            Outcome.BAD_REQUEST,
+            f'the stamp of the {name} must not be negative, got {pose.stamp} ns',
         )

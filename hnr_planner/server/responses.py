@@ -1,4 +1,4 @@
-"""What is answered to a request, for a path or for draws: data, without ROS."""
+"""Responses to requests for paths and for draws, as data."""
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass, field
@@ -6,8 +6,9 @@ import math
 
 from hnr_planner.core import FreeSpaceDraws
 from hnr_planner.core.planning.result import SearchResult
-from hnr_planner.ros.messages.orientations import LEVEL, normalised, Quaternion
+from hnr_planner.core.systems import Trajectory
 from hnr_planner.server.map_store import MapSnapshot
+from hnr_planner.server.orientations import LEVEL, normalised, Quaternion
 from hnr_planner.server.outcomes import Outcome
 from hnr_planner.server.path_validity import PlanarPose
 from hnr_planner.server.requests import PlanRequest
@@ -19,7 +20,7 @@ from numpy.typing import NDArray
 @dataclass(frozen=True)
 class Response(ABC):
     """
-    The answer to a request.
+    How a request ended.
 
     Parameters
     ----------
@@ -28,9 +29,9 @@ class Response(ABC):
     why : str
         The same in words, with the values.
     elapsed : float
-        Time from the request to this report [s].
+        Time from the request to this response [s].
     snapshot : MapSnapshot, optional
-        The map that the answer holds for; None when there was none.
+        The map that the response holds for; None when there was none.
 
     """
 
@@ -56,21 +57,25 @@ class Response(ABC):
 
     @property
     def values(self) -> dict[str, str]:
-        """Return everything worth knowing; seconds and metres, NaN where unknown."""
+        """Return what is published about the request; seconds and metres, NaN where unknown."""
         return {'why': self.why, 'algorithm': self.algorithm, 'elapsed': f'{self.elapsed:.6f}'}
 
 
 @dataclass(frozen=True)
 class PlanResponse(Response):
     """
-    The answer to a request for a path.
+    How a request for a path ended.
 
     Parameters
     ----------
-    request : Request
-        What was asked for; in the map's frame once something was planned.
+    request : PlanRequest
+        The request; in the map's frame once something was planned.
     result : SearchResult, optional
         What the planner returned; None when nothing was planned.
+    poses : (n, 7)
+        Poses along the path: x, y, z [m] and the quaternion x, y, z, w; none unless solved.
+    trajectory : Trajectory, optional
+        What a robot with inertia does over time.
     clearance : float
         Smallest distance between the path and an obstacle [m]; NaN without a path.
     escape : float
@@ -83,6 +88,8 @@ class PlanResponse(Response):
 
     request: PlanRequest
     result: SearchResult | None = None
+    poses: NDArray[np.float64] = field(default_factory=lambda: np.empty((0, 7)))
+    trajectory: Trajectory | None = None
     clearance: float = math.nan
     escape: float = 0.0
     blocked: PlanarPose | None = None
@@ -99,63 +106,65 @@ class PlanResponse(Response):
 
     @property
     def path(self) -> NDArray[np.float64]:
-        """Return the vertices of the path, an array (m, 2); none unless solved."""
+        """Return the vertices (m, 2) of the path [m]; none unless solved."""
         if self.solved and self.result is not None:
             return self.result.path
         return np.empty((0, 2))
 
     @property
     def free_path(self) -> NDArray[np.float64]:
-        """Return the part of the path that is free: all but the way out of a blocked start."""
+        """Return the vertices of the path without the way out of a start that is not free."""
         return self.path[1:] if self.escape > 0.0 else self.path
 
     @property
     def goal_orientation(self) -> Quaternion:
-        """Return the orientation asked for at the goal, with norm 1."""
+        """Return the orientation requested at the goal, with norm 1."""
         return normalised(self.request.goal.orientation) or LEVEL
 
     @property
     def offset(self) -> float:
-        """Return how far the path ends from the goal asked for [m]; NaN without a path."""
+        """Return the distance from the path's end to the goal [m]; NaN without a path."""
         if not self.solved:
             return math.nan
         return float(math.dist(self.path[-1], self.request.goal.point))
 
     @property
     def algorithm(self) -> str:
-        """Return the planner that planned, or else the one asked for."""
+        """Return the planner that planned, or else the one requested."""
         return self.request.algorithm if self.result is None else self.result.planner
 
     @property
     def values(self) -> dict[str, str]:
-        """Return everything worth knowing; seconds and metres, NaN where unknown."""
+        """Return what is published about the request; seconds and metres, NaN where unknown."""
         values = super().values | {
             'clearance': f'{self.clearance:.6g}',
             'offset': f'{self.offset:.6g}',
             'escape': f'{self.escape if self.solved else math.nan:.6g}',
         }
         if self.blocked is not None:
-            values |= {f'blocked_{part}': f'{n:.6g}' for part, n in self.blocked._asdict().items()}
-        result = self.result
-        if result is not None:
-            first_elapsed, first_length = (result.first_solution or (math.nan, math.nan))[:2]
-            values |= {
-                'seed': str(result.seed),
-                'iterations': str(result.iterations),
-                'samples': str(len(result.samples)),
-                'planning_time': f'{result.elapsed:.6f}',
-                'first_solution_time': f'{first_elapsed:.6f}',
-                'first_solution_length': f'{first_length:.6g}',
-                'length': f'{result.length if self.solved else math.nan:.6g}',
-                'cut_by_time': str(bool(result.cut_by_time)).lower(),
-            }
+            values |= {f'blocked_{name}': f'{n:.6g}' for name, n in self.blocked._asdict().items()}
+        if self.result is not None:
+            values |= self._search_values(self.result)
         return values
+
+    def _search_values(self, result: SearchResult) -> dict[str, str]:
+        first = result.first_solution
+        return {
+            'seed': str(result.seed),
+            'iterations': str(result.iterations),
+            'samples': str(len(result.samples)),
+            'planning_time': f'{result.elapsed:.6f}',
+            'first_solution_time': f'{first.elapsed if first else math.nan:.6f}',
+            'first_solution_length': f'{first.length if first else math.nan:.6g}',
+            'length': f'{result.length if self.solved else math.nan:.6g}',
+            'cut_by_time': str(bool(result.cut_by_time)).lower(),
+        }
 
 
 @dataclass(frozen=True)
 class SampleResponse(Response):
     """
-    The answer to a request for draws.
+    How a request for draws ended.
 
     Parameters
     ----------
@@ -171,12 +180,12 @@ class SampleResponse(Response):
 
     @property
     def points(self) -> NDArray[np.float64]:
-        """Return the draws (n, 2); none after a failure."""
+        """Return the draws (n, 2) [m]; none after a failure."""
         return np.empty((0, 2)) if self.draws is None else self.draws.points[0]
 
     @property
-    def n_parts(self) -> int:
-        """Return how many connected parts of the free space the draws lie in."""
+    def n_components(self) -> int:
+        """Return how many connected components of the free space the draws lie in."""
         return 0 if self.draws is None else len(np.unique(self.draws.components))
 
     @property
@@ -193,14 +202,14 @@ class SampleResponse(Response):
 
     @property
     def values(self) -> dict[str, str]:
-        """Return everything worth knowing; seconds."""
+        """Return what is published about the request; seconds."""
         values = super().values
         if self.draws is not None:
-            n_steps = (len(self.points) - self.n_parts) * self.settings.sample_thin
+            n_steps = (len(self.points) - self.n_components) * self.settings.sample_thin
             values |= {
                 'seed': str(self.draws.seed),
                 'iterations': str(n_steps),
                 'samples': str(len(self.points)),
-                'parts': str(self.n_parts),
+                'parts': str(self.n_components),
             }
         return values

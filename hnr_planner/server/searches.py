@@ -1,4 +1,4 @@
-"""The searches that are running, let in while the node is active."""
+"""The searches that are running; they are admitted while the node is active."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -10,7 +10,7 @@ WHY_DISABLED = 'the node is not active: configure and activate it, or start it w
 
 
 class RunningSearches:
-    """A register of running searches; each one watches its own event."""
+    """A register of running searches; each one ends once its own event is set."""
 
     def __init__(self) -> None:
         self._events: set[threading.Event] = set()
@@ -20,12 +20,12 @@ class RunningSearches:
     @contextmanager
     def one(self, cancel: threading.Event) -> Iterator[None]:
         """
-        Register a search for the length of a `with` block; `cancel` tells it to end.
+        Register a search for the length of a ``with`` block; ``cancel`` is the event that ends it.
 
         Raises
         ------
         Refusal
-            NOT_ACTIVE, when no searches are let in.
+            NOT_ACTIVE, when no searches are admitted.
 
         """
         with self._lock:
@@ -38,28 +38,28 @@ class RunningSearches:
                 self._events.discard(cancel)
 
     def check_enabled(self) -> None:
-        """Raise Refusal (NOT_ACTIVE) when no searches are let in."""
+        """Raise Refusal (NOT_ACTIVE) when no searches are admitted."""
         if not self._enabled:
             raise Refusal(Outcome.NOT_ACTIVE, WHY_DISABLED)
 
     def __len__(self) -> int:
-        """Return how many are running."""
+        """Return how many searches are running."""
         return len(self._events)
 
     def cancel(self) -> int:
-        """Tell all running searches to end and return how many were told."""
+        """Set the events of all running searches and return how many there are."""
         with self._lock:
             for event in self._events:
                 event.set()
             return len(self._events)
 
     def enable(self) -> None:
-        """Let searches in."""
+        """Admit searches."""
         with self._lock:
             self._enabled = True
 
     def disable(self) -> None:
-        """Let no more searches in, and tell those that run to end."""
+        """Admit no more searches, and cancel those that run."""
         with self._lock:
             self._enabled = False
         self.cancel()

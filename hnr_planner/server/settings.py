@@ -1,8 +1,8 @@
 """
-What can be set on the planner, each with its meaning, unit, range and default.
+Parameters of the planning server, each with its meaning, unit, range and default.
 
-`Settings` is the one table: the node declares its ROS parameters from it, requests are answered
-with a frozen copy of it, and the documented configuration is held to it.
+``Settings`` is the one table: the node declares its ROS parameters from it, each request is
+planned with a frozen copy of it, and the documented configuration is held to it by a test.
 """
 
 import dataclasses
@@ -10,51 +10,27 @@ from dataclasses import dataclass
 import math
 from typing import Any
 
-from hnr_planner.core import ALGORITHMS, BallWalk, HnrError, KINODYNAMIC_PLANNERS, WALKS
+from hnr_planner.core import ALGORITHMS, BallWalk, KINODYNAMIC_PLANNERS, WALKS
 from hnr_planner.core.systems import DoubleIntegrator
+from hnr_planner.server.rules import Rule, setting, SettingsError
 
+#: Largest value of an integer parameter.
 LARGEST_INT = 2**31 - 1
 
-
-class SettingsError(HnrError, ValueError):
-    """A parameter was given a value that it cannot have."""
-
-
-@dataclass(frozen=True)
-class Rule:
-    """What a parameter means and which values it takes."""
-
-    description: str
-    unit: str = ''
-    lower: float | None = None
-    upper: float | None = None
-    choices: tuple[str, ...] = ()
-    read_only: bool = False
-
-    def check(self, name: str, value: Any) -> None:
-        """Raise SettingsError, with the value and the rule, when `value` breaks this rule."""
-        if self.choices and value not in self.choices:
-            names = ', '.join(self.choices)
-            raise SettingsError(f'{name} must be one of {names}, got {value!r}')
-        if self.lower is not None and self.upper is not None:
-            if not self.lower <= value <= self.upper:
-                unit = f' {self.unit}' if self.unit else ''
-                allowed = f'{self.lower:.10g}..{self.upper:.10g}{unit}'
-                raise SettingsError(f'{name} must be in {allowed}, got {value!r}')
-
-
-def _setting(default: Any, description: str, unit: str = '', **rule: Any) -> Any:
-    """Return a field of `Settings` that carries its rule."""
-    metadata = {'rule': Rule(description, unit, **rule)}
-    return dataclasses.field(default=default, metadata=metadata)
+#: Names of all planners that a request may ask for.
+SERVED_ALGORITHMS = (*ALGORITHMS, *KINODYNAMIC_PLANNERS)
 
 
 @dataclass(frozen=True)
 class Settings:
-    """The parameters of the planning node, checked; a request is answered with one such copy."""
+    """The parameters of the planning server, checked; each request is planned with one copy."""
 
-    algorithm: str = _setting('auto', 'Algorithm of the service ~/plan.', choices=ALGORITHMS)
-    robot_radius: float = _setting(
+    algorithm: str = setting(
+        'auto',
+        'Algorithm of the service ~/plan, and of requests that name none.',
+        choices=ALGORITHMS,
+    )
+    robot_radius: float = setting(
         0.0,
         'Radius of the robot as a circle: give the circumscribed one. 0 for a map that is '
         'inflated already.',
@@ -62,50 +38,51 @@ class Settings:
         lower=0.0,
         upper=1000.0,
     )
-    unknown: str = _setting(
+    unknown: str = setting(
         'blocked', 'Whether the robot may enter unknown cells.', choices=('blocked', 'free')
     )
-    occupied_threshold: int = _setting(
+    occupied_threshold: int = setting(
         65,
         'A cell with this value or more is occupied; 99, with robot_radius 0, for a Nav2 costmap.',
         lower=1,
         upper=100,
     )
-    time_limit: float = _setting(
+    time_limit: float = setting(
         1.0, 'Longest time for the whole planning of one request.', 's', lower=0.001, upper=3600.0
     )
-    max_iterations: int = _setting(
+    max_iterations: int = setting(
         0,
         'Most transitions (proposals handled) for one request; 0 for no limit.',
         lower=0,
         upper=LARGEST_INT,
     )
-    goal_radius: float = _setting(
+    goal_radius: float = setting(
         0.0,
         'The goal is reached within this distance; 0: the path ends exactly at the goal.',
         'm',
         lower=0.0,
         upper=1000.0,
     )
-    simplify: bool = _setting(True, 'Shorten the path that was found by visibility.')
-    optimize_for: float = _setting(
-        0.0,
-        'A shorter path is looked for until so long after the request, inside time_limit.',
+    simplify: bool = setting(True, 'Shorten the path that was found by visibility.')
+    optimize_for: float = setting(
+        0.02,
+        'A shorter path is looked for until so long after the request, inside time_limit; 0: the '
+        'first path is taken.',
         's',
         lower=0.0,
         upper=3600.0,
     )
-    max_acceleration: float = _setting(
+    max_acceleration: float = setting(
         1.0,
         'Largest acceleration of a robot with inertia, for the services ~/plan_kinodynamic_...',
         'm/s^2',
         lower=0.001,
         upper=1000.0,
     )
-    max_speed: float = _setting(
+    max_speed: float = setting(
         1.0, 'Largest speed of a robot with inertia.', 'm/s', lower=0.001, upper=1000.0
     )
-    goal_speed: float = _setting(
+    goal_speed: float = setting(
         0.0,
         'Largest speed of a robot with inertia at the goal; -1: any. 0, at rest, only '
         '~/plan_kinodynamic_connect can do; for the others it means any.',
@@ -113,19 +90,19 @@ class Settings:
         lower=-1.0,
         upper=1000.0,
     )
-    boundary: str = _setting(
+    boundary: str = setting(
         'forbidden',
         'What an obstacle does in ~/plan_kinodynamic_hit_and_run and _rrt: it must not be met, or '
         'it stops the robot, which goes on from there.',
         choices=('forbidden', 'inelastic'),
     )
-    seed: int = _setting(
+    seed: int = setting(
         -1,
         'Seed of every request; -1: a fresh one for each request. The outcome states it.',
         lower=-1,
         upper=LARGEST_INT,
     )
-    default_tolerance: float = _setting(
+    default_tolerance: float = setting(
         0.0,
         'How far from a goal that cannot be reached the path may end, for clicks and actions; a '
         'request by a service brings its own tolerance.',
@@ -133,7 +110,7 @@ class Settings:
         lower=0.0,
         upper=1000.0,
     )
-    escape_radius: float = _setting(
+    escape_radius: float = setting(
         0.0,
         'A start that is not free is led to free space in a straight line, if that is within this '
         'distance and no obstacle between; 0: such a start is refused.',
@@ -141,7 +118,7 @@ class Settings:
         lower=0.0,
         upper=10.0,
     )
-    transform_tolerance: float = _setting(
+    transform_tolerance: float = setting(
         0.3,
         'Longest time to wait for the transform of a start or goal in another frame than the '
         "map's, inside time_limit.",
@@ -149,11 +126,11 @@ class Settings:
         lower=0.0,
         upper=60.0,
     )
-    robot_base_frame: str = _setting(
+    robot_base_frame: str = setting(
         'base_link',
         'Frame of the robot: where a path begins that an action asks for without a start.',
     )
-    pose_spacing: float = _setting(
+    pose_spacing: float = setting(
         -1.0,
         'Largest distance between poses of the path; -1: the resolution of the map; 0: the '
         'vertices only.',
@@ -161,41 +138,53 @@ class Settings:
         lower=-1.0,
         upper=1000.0,
     )
-    samples_max: int = _setting(
+    samples_max: int = setting(
         100_000, 'Most samples of one search in ~/samples.', lower=0, upper=10_000_000
     )
-    sample_count: int = _setting(
+    sample_count: int = setting(
         1000,
         'Draws of the free space for one request to ~/sample; seed and time_limit hold for them, '
         'too.',
         lower=1,
         upper=1_000_000,
     )
-    sample_walk: str = _setting('hit_and_run', 'Random walk of ~/sample.', choices=WALKS)
-    sample_radius: float = _setting(
+    sample_walk: str = setting('hit_and_run', 'Random walk of ~/sample.', choices=WALKS)
+    sample_radius: float = setting(
         0.0,
         'Longest step of ball_walk; 0: what suits the map.',
         'm',
         lower=0.0,
         upper=1000.0,
     )
-    sample_thin: int = _setting(
+    sample_thin: int = setting(
         1,
         'Steps of the walk from one draw of ~/sample to the next: with more, draws depend less on '
         'each other.',
         lower=1,
         upper=100_000,
     )
-    rviz_clicks: bool = _setting(
+    map_wait: float = setting(
+        1.0,
+        'How long a request that comes before the first map waits for it, inside time_limit.',
+        's',
+        lower=0.0,
+        upper=3600.0,
+    )
+    planner_aliases: tuple[str, ...] = setting(
+        ('GridBased:auto',),
+        'Names of planners in goals of Nav2, each with the algorithm that it stands for.',
+        entries='NAME:ALGORITHM',
+    )
+    rviz_clicks: bool = setting(
         False, 'Listen to the click tools of RViz: initialpose keeps the start, goal_pose plans.'
     )
-    autostart: bool = _setting(
+    autostart: bool = setting(
         True,
         'Whether the node configures and activates itself; false: the transitions come from '
         'outside, as from the lifecycle manager of Nav2. Read only: set it when the node starts.',
         read_only=True,
     )
-    map_subscribe_transient_local: bool = _setting(
+    map_subscribe_transient_local: bool = setting(
         True,
         'Ask for a latched map (as map_server offers it). Read only: set it when the node starts.',
         read_only=True,
@@ -203,6 +192,7 @@ class Settings:
 
     def __post_init__(self) -> None:
         """Check every value against its rule."""
+        object.__setattr__(self, 'planner_aliases', tuple(self.planner_aliases))
         for name, rule in RULES.items():
             rule.check(name, getattr(self, name))
         if -1.0 < self.pose_spacing < 0.0:
@@ -214,32 +204,63 @@ class Settings:
             raise SettingsError(
                 f'goal_speed must be -1 (any), 0 (at rest) or positive, got {self.goal_speed!r}'
             )
+        for alias in filter(None, self.planner_aliases):
+            name, _, algorithm = alias.partition(':')
+            if not name or algorithm not in SERVED_ALGORITHMS:
+                names = ', '.join(SERVED_ALGORITHMS)
+                raise SettingsError(
+                    f'planner_aliases must be NAME:ALGORITHM each, with an algorithm of {names}, '
+                    f'got {alias!r}'
+                )
+
+    @property
+    def aliases(self) -> dict[str, str]:
+        """Return the algorithm that each alias stands for; an empty entry is none."""
+        return dict(alias.split(':', 1) for alias in self.planner_aliases if alias)
+
+    @property
+    def patience(self) -> float:
+        """Return how long a request waits for the first map [s]."""
+        return min(self.map_wait, self.time_limit)
 
     @property
     def space_arguments(self) -> dict[str, Any]:
-        """Return what decides how a map becomes a space."""
+        """Return the arguments by which a map becomes a space."""
         return {
             'robot_radius': self.robot_radius,
             'unknown': self.unknown,
             'occupied_threshold': self.occupied_threshold,
         }
 
-    def motion_arguments(self, algorithm: str) -> dict[str, Any]:
-        """Return what `plan` takes besides for a robot with inertia."""
-        system = DoubleIntegrator(
+    @property
+    def system(self) -> DoubleIntegrator:
+        """Return the robot with inertia."""
+        return DoubleIntegrator(
             dim=2, max_acceleration=self.max_acceleration, max_speed=self.max_speed
         )
+
+    def trajectory_arguments(self, algorithm: str, *, goal_is_moved: bool) -> dict[str, Any]:
+        """Return the arguments of ``plan_trajectory`` but for the time that is left."""
+        # A planner that draws states never draws the goal itself, nor one at rest.
         samples_goal = KINODYNAMIC_PLANNERS[algorithm].samples_goal
         unbounded = self.goal_speed < 0.0 or (self.goal_speed == 0.0 and samples_goal)
         arguments = {
-            'system': system,
+            **self._search_arguments,
             'goal_speed': math.inf if unbounded else self.goal_speed,
         }
-        return {**arguments, 'boundary': self.boundary} if samples_goal else arguments
+        if samples_goal:
+            return {**arguments, 'boundary': self.boundary}
+        # A goal that was moved already would be moved once more by a region around it.
+        return {**arguments, 'goal_radius': 0.0} if goal_is_moved else arguments
 
     @property
     def plan_arguments(self) -> dict[str, Any]:
-        """Return what `plan` takes from the settings, besides the time that is left."""
+        """Return the arguments of ``plan`` but for the time that is left."""
+        return {**self._search_arguments, 'start_escape': self.escape_radius}
+
+    @property
+    def _search_arguments(self) -> dict[str, Any]:
+        """Return the arguments that ``plan`` and ``plan_trajectory`` share."""
         return {
             'goal_radius': self.goal_radius,
             'max_iterations': self.max_iterations or None,
@@ -250,7 +271,7 @@ class Settings:
 
     @property
     def sample_arguments(self) -> dict[str, Any]:
-        """Return what `sample_free_space` takes from the settings."""
+        """Return the arguments of ``sample_free_space``."""
         ball = BallWalk(self.sample_radius or None)
         return {
             'n_draws': self.sample_count,
@@ -260,7 +281,10 @@ class Settings:
         }
 
 
+#: The rule of each parameter, by its name.
 RULES: dict[str, Rule] = {
     field.name: field.metadata['rule'] for field in dataclasses.fields(Settings)
 }
+
+#: The default of each parameter.
 DEFAULTS = Settings()

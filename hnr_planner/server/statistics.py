@@ -1,4 +1,4 @@
-"""What the node knows about its own work: outcomes counted, and how long planning takes."""
+"""Statistics of requests: how many ended how, and how long planning takes."""
 
 from collections import Counter, deque
 from dataclasses import dataclass
@@ -8,12 +8,13 @@ from hnr_planner.server.outcomes import Outcome
 from hnr_planner.server.responses import Response
 import numpy as np
 
+#: Times of so many of the last requests are kept.
 REMEMBERED_TIMES = 1000
 
 
 @dataclass(frozen=True)
 class Summary:
-    """Requests answered, by outcome, and the median and 95th percentile of their time [s]."""
+    """Requests by outcome, and the median and 95th percentile of their time [s]."""
 
     outcomes: dict[Outcome, int]
     median: float
@@ -21,27 +22,27 @@ class Summary:
 
     @property
     def requests(self) -> int:
-        """Return the number of requests answered."""
+        """Return the number of requests."""
         return sum(self.outcomes.values())
 
 
 class Statistics:
-    """Counts reports; times are those of the last requests that searched."""
+    """Counts responses; times are those of the last requests that searched."""
 
     def __init__(self) -> None:
         self._outcomes: Counter[Outcome] = Counter()
         self._times: deque[float] = deque(maxlen=REMEMBERED_TIMES)
         self._lock = threading.Lock()
 
-    def count(self, report: Response) -> None:
-        """Add one report."""
+    def count(self, response: Response) -> None:
+        """Add one response."""
         with self._lock:
-            self._outcomes[report.outcome] += 1
-            if report.searched:
-                self._times.append(report.elapsed)
+            self._outcomes[response.outcome] += 1
+            if response.searched:
+                self._times.append(response.elapsed)
 
     def summary(self) -> Summary:
-        """Return the figures so far; times are NaN before the first search."""
+        """Return the numbers so far; times are NaN before the first search."""
         with self._lock:
             outcomes, times = dict(self._outcomes), list(self._times)
         median, p95 = np.percentile(times, [50, 95]) if times else (np.nan, np.nan)

@@ -1,4 +1,4 @@
-"""Which samples are shown when there are more than may be shown."""
+"""A part of a search tree that is small enough to be shown."""
 
 from typing import NamedTuple
 
@@ -6,16 +6,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 
-class ShownSamples(NamedTuple):
-    """Rows of the samples that are kept, ascending, and the parent of each among the kept."""
+class TreeSubsample(NamedTuple):
+    """Rows (n,) of the samples that are kept, ascending, and each one's parent among the kept."""
 
     rows: NDArray[np.intp]
     parents: NDArray[np.int32]
 
 
-def shown_samples(parents: NDArray[np.integer], limit: int) -> ShownSamples:
+def subsample_tree(parents: NDArray[np.integer], limit: int) -> TreeSubsample:
     """
-    Return at most `limit` samples, every one with all of its ancestors.
+    Return at most ``limit`` samples, every one with all of its ancestors.
 
     The branch that ends in the last sample, where a search ends, is kept if it fits; the
     earliest samples fill what is left.
@@ -30,7 +30,7 @@ def shown_samples(parents: NDArray[np.integer], limit: int) -> ShownSamples:
     """
     count = len(parents)
     if count <= limit:
-        return ShownSamples(np.arange(count), parents.astype(np.int32))
+        return TreeSubsample(np.arange(count), parents.astype(np.int32))
     branch = _branch(parents, count - 1, limit)
     kept = np.zeros(count, dtype=bool)
     kept[branch] = True
@@ -40,11 +40,11 @@ def shown_samples(parents: NDArray[np.integer], limit: int) -> ShownSamples:
     rows = np.flatnonzero(kept)
     new_row = np.full(count + 1, -1, dtype=np.int32)  # the last entry stands for parent -1
     new_row[rows] = np.arange(len(rows), dtype=np.int32)
-    return ShownSamples(rows, new_row[parents[rows]])
+    return TreeSubsample(rows, new_row[parents[rows]])
 
 
 def _branch(parents: NDArray[np.integer], leaf: int, limit: int) -> list[int]:
-    """Return `leaf` and its ancestors, or nothing when they are more than `limit`."""
+    """Return ``leaf`` and its ancestors, or nothing when they are more than ``limit``."""
     branch: list[int] = []
     row = leaf
     while row >= 0:

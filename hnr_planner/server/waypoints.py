@@ -1,19 +1,21 @@
 """A path through several poses: one search for each leg, joined to one result."""
 
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import replace
 import itertools
 
-from hnr_planner.core.planning.result import SearchResult
+from hnr_planner.core import PlanResult
 import numpy as np
 
 
-def joined(results: Sequence[SearchResult]) -> SearchResult:
+def joined(results: Sequence[PlanResult]) -> PlanResult:
     """
-    Return the results of solved legs as one; each begins where the one before it ended.
+    Return the results of solved legs as one; each leg begins where the one before it ended.
 
-    Path and samples follow each other, with parents that refer to the rows as they are then, and
-    what was counted is summed. The seed is that of the first leg, all had the same or none.
+    Path and samples follow each other, with parents that refer to the rows as they are then.
+    Lengths, times, iterations and counts are summed. The seed is that of the first leg, since all
+    had the same or none.
     """
     first, *others = results
     if not others:
@@ -23,17 +25,20 @@ def joined(results: Sequence[SearchResult]) -> SearchResult:
         np.where(result.parents < 0, result.parents, result.parents + offset)
         for result, offset in zip(results, offsets, strict=False)
     ]
-    path = np.vstack([first.path, *(result.path[1:] for result in others)])
-    length = sum(result.length for result in results)
+    counts: Counter[str] = Counter()
+    for result in results:
+        counts.update(result.counts)
     return replace(
         first,
-        message=f'path of {length:.6g} m through {len(others)} poses on the way',
-        path=path,
-        length=length,
+        message=f'path through {len(others)} poses on the way',
+        path=np.vstack([first.path, *(result.path[1:] for result in others)]),
+        length=sum(result.length for result in results),
         samples=np.vstack([result.samples for result in results]),
         parents=np.concatenate(parents),
         iterations=sum(result.iterations for result in results),
+        counts=dict(counts),
         elapsed=sum(result.elapsed for result in results),
         cut_by_time=any(result.cut_by_time for result in results),
         first_solution=None,
+        goal_offset=results[-1].goal_offset,
     )

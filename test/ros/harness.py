@@ -18,9 +18,9 @@ from typing import Any
 
 from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import PoseStamped
-from hnr_planner.ros.messages.maps import message_from_grid
+from hnr_planner.maps import OccupancyMap
+from hnr_planner.ros.messages.maps import message_from_map
 from hnr_planner.ros.messages.outcomes import read_outcome
-from hnr_planner.server.map_store import Grid
 from hnr_planner.server.outcomes import Outcome
 from nav_msgs.msg import OccupancyGrid
 from nav_msgs.msg import Path as PathMessage
@@ -45,15 +45,16 @@ LATCHED = QoSProfile(
     reliability=ReliabilityPolicy.RELIABLE,
 )
 MANY = QoSProfile(depth=1000)
+
+#: Longest time [s] that anything here may take to happen.
 SOON = 20.0
-"""Longest time [s] that anything here may take to happen."""
 
 
 def until(
     condition: Callable[[], Any], what: str | Callable[[], str], timeout: float = SOON
 ) -> Any:
     """
-    Return the first true value of `condition`, or fail saying `what` did not happen.
+    Return the first true value of ``condition``, or fail saying ``what`` did not happen.
 
     A callable is asked for its words when they are needed, so that they tell the end.
     """
@@ -67,7 +68,7 @@ def until(
 
 
 class NodeProcess:
-    """A node in a process of its own; `log` is all that it has printed so far."""
+    """A node in a process of its own; ``log`` is all that it has printed so far."""
 
     def __init__(self, module: str, log: Path, parameters: dict[str, Any], *arguments: str):
         settings = [
@@ -77,7 +78,7 @@ class NodeProcess:
         ]
         # A map that differs from the last in its cells only is told of quietly.
         settings += ['--log-level', 'hnr_planner:=debug']
-        command = [sys.executable, '-m', f'hnr_planner.ros.{module}', '--ros-args', *settings]
+        command = [sys.executable, '-m', f'hnr_planner.ros.node.{module}', '--ros-args', *settings]
         self._log = log
         with log.open('w') as output:
             self.popen = subprocess.Popen(
@@ -94,7 +95,7 @@ class NodeProcess:
         return self._log.read_text()
 
     def wait_for(self, text: str, timeout: float = 120.0) -> None:
-        """Wait until `text` is on the log."""
+        """Wait until ``text`` is on the log."""
         until(
             lambda: text in self.log or self.popen.poll() is not None,
             lambda: f'"{text}" on the log:\n{self.log}',
@@ -125,7 +126,7 @@ def _yaml(value: Any) -> str:
 def node_process(
     module: str, log: Path, ready: str = 'ready', *arguments: str, **parameters: Any
 ) -> Iterator[NodeProcess]:
-    """Run a node for the length of a `with` block, from when it says that it is ready."""
+    """Run a node for the length of a ``with`` block, from when it says that it is ready."""
     process = NodeProcess(module, log, parameters, *arguments)
     try:
         process.wait_for(ready)
@@ -161,7 +162,7 @@ def maze(rows: int = 401, cols: int = 401, gap: int = 1) -> np.ndarray:
 
 
 def from_corner(origin: tuple[float, float, float], x: float, y: float) -> tuple[float, float]:
-    """Return the point that is `x` and `y` metres from a map's corner along its sides."""
+    """Return the point that is ``x`` and ``y`` metres from a map's corner along its sides."""
     z = complex(x, y) * np.exp(1j * origin[2])
     return origin[0] + float(z.real), origin[1] + float(z.imag)
 
@@ -174,7 +175,7 @@ def grid_message(
 ) -> OccupancyGrid:
     """Return a map message."""
     stamp = rclpy.clock.Clock().now().to_msg()
-    return message_from_grid(Grid(data, resolution, origin, frame), stamp)
+    return message_from_map(OccupancyMap(data, resolution, origin, frame), stamp)
 
 
 def set_field(message: Any, field: str, value: object) -> None:
@@ -221,8 +222,8 @@ def points_in(cloud: PointCloud2) -> np.ndarray:
     return np.frombuffer(cloud.data.tobytes(), dtype=layout)
 
 
+#: What a request was answered with: a path, or that there are draws.
 Answer = PathMessage | Trigger.Response
-"""What a request was answered with: a path, or that there are draws."""
 
 
 class Client:

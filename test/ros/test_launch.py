@@ -20,6 +20,8 @@ import yaml
 ROOT = Path(__file__).parents[2]
 OFFICE = ROOT / 'config' / 'maps' / 'office.yaml'
 LAYOUT = yaml.safe_load((ROOT / 'config' / 'hnr_planner.rviz').read_text())
+
+#: What ``ros2 launch`` does, for those who have launch but not ros2cli.
 PROGRAM = """
 import sys
 from launch import LaunchDescription, LaunchService
@@ -31,7 +33,6 @@ service.include_launch_description(LaunchDescription([
 ]))
 sys.exit(service.run())
 """
-"""What `ros2 launch` does, for those who have launch but not ros2cli."""
 
 
 @pytest.fixture
@@ -48,7 +49,7 @@ def prefix(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 @contextmanager
 def launched(prefix: Path, *arguments: str) -> Iterator[Path]:
-    """Run the launch file for the length of a `with` block; return its log."""
+    """Run the launch file for the length of a ``with`` block; return its log."""
     paths = {
         'AMENT_PREFIX_PATH': [str(prefix)],
         'PATH': [str(Path(sys.executable).parent)],

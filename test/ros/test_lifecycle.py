@@ -35,13 +35,14 @@ SHUTDOWN = {
     INACTIVE: Transition.TRANSITION_INACTIVE_SHUTDOWN,
     ACTIVE: Transition.TRANSITION_ACTIVE_SHUTDOWN,
 }
+
+#: Transitions that lead to each state from the first one.
 WAY_TO = {
     UNCONFIGURED: (),
     INACTIVE: (CONFIGURE,),
     ACTIVE: (CONFIGURE, ACTIVATE),
     FINALIZED: (SHUTDOWN[UNCONFIGURED],),
 }
-"""Transitions that lead to each state from the first one."""
 
 
 @pytest.fixture

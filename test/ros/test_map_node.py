@@ -13,7 +13,7 @@ from test.ros.harness import (
 )
 
 from hnr_planner.maps import FREE, OccupancyMap, OCCUPIED, save_map
-from hnr_planner.ros.messages.maps import grid_from_message
+from hnr_planner.ros.messages.maps import map_from_message
 from nav_msgs.msg import OccupancyGrid
 from nav_msgs.srv import GetMap
 import numpy as np
@@ -68,7 +68,7 @@ def served(client: Client) -> OccupancyGrid:
 
 def assert_is(message: OccupancyGrid, expected: OccupancyMap, frame: str = 'map') -> None:
     """Compare a message with a map."""
-    grid = grid_from_message(message)
+    grid = map_from_message(message)
     assert np.array_equal(grid.data, expected.data)
     assert grid.resolution == expected.resolution
     assert grid.origin == pytest.approx(expected.origin, abs=1e-12)

@@ -129,6 +129,7 @@ def test_maps_grow_shrink_move_and_turn(client: Client, planner: NodeProcess) ->
     client.node.destroy_publisher(publisher)
 
 
+#: Shapes and origins of maps that come one after the other.
 PLACES = (
     ((60, 80), (0.0, 0.0, 0.0)),
     ((200, 160), (0.0, 0.0, 0.0)),
@@ -136,7 +137,6 @@ PLACES = (
     ((40, 50), (-7.0, 3.0, 2.5)),
     ((90, 50), (1e4, -1e4, -1.2)),
 )
-"""Shapes and origins of maps that come one after the other."""
 
 
 def test_same_map_again_is_not_prepared_again_but_is_young(

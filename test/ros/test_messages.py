@@ -6,20 +6,28 @@ from test.ros.harness import points_in, set_field
 
 from builtin_interfaces.msg import Time
 from hnr_planner.core import GridSpace, plan
-from hnr_planner.ros.messages.maps import as_written, grid_from_message, message_from_grid
-from hnr_planner.ros.messages.markers import MOST_POINTS, serialised_markers
+from hnr_planner.core.systems import DoubleIntegrator, Trajectory
+from hnr_planner.maps import OccupancyMap
+from hnr_planner.ros.messages.maps import map_from_message, message_from_map
+from hnr_planner.ros.messages.markers import serialised_markers
 from hnr_planner.ros.messages.paths import path_message, serialised_path
 from hnr_planner.ros.messages.samples import LAYOUT, samples_message
-from hnr_planner.server.map_store import Grid, MapError, MapSnapshot
+from hnr_planner.ros.messages.serialised_response import PlanResponses
+from hnr_planner.ros.messages.trajectories import serialised_trajectory
+from hnr_planner.server.map_store import MapSnapshot
 from hnr_planner.server.outcomes import Outcome
+from hnr_planner.server.received_maps import as_written, MapError
 from hnr_planner.server.requests import PlanRequest, Pose
 from hnr_planner.server.responses import PlanResponse
+from hnr_planner.server.shapes import MOST_POINTS
 from nav_msgs.msg import OccupancyGrid
 from nav_msgs.msg import Path as PathMessage
+from nav_msgs.srv import GetPlan
 import numpy as np
 import pytest
-from rclpy.serialization import deserialize_message
+from rclpy.serialization import deserialize_message, serialize_message
 from std_msgs.msg import Header
+from trajectory_msgs.msg import MultiDOFJointTrajectory
 from visualization_msgs.msg import Marker, MarkerArray
 
 STAMP = Time(sec=12, nanosec=34)
@@ -29,14 +37,14 @@ DATA = np.arange(-1, 5, dtype=np.int8).reshape(2, 3)
 
 def message(**changes: object) -> OccupancyGrid:
     """Return a good map message, with some fields changed."""
-    result = message_from_grid(Grid(DATA, 0.05, (1.0, -2.0, 0.5), 'floor'), STAMP)
+    result = message_from_map(OccupancyMap(DATA, 0.05, (1.0, -2.0, 0.5), 'floor'), STAMP)
     for name, value in changes.items():
         set_field(result, name.replace('__', '.'), value)
     return result
 
 
 def test_map_survives_the_way_there_and_back() -> None:
-    grid = grid_from_message(message())
+    grid = map_from_message(message())
     assert np.array_equal(grid.data, DATA)
     assert grid.data.dtype == np.int8
     assert grid.resolution == 0.05
@@ -47,7 +55,7 @@ def test_map_survives_the_way_there_and_back() -> None:
 @pytest.mark.parametrize('resolution', [0.05, 0.1, 0.025, 1.0, 0.03, 1e-4, 12.5, 1000.0])
 def test_resolution_is_read_as_it_was_written(resolution: float) -> None:
     assert as_written(float(np.float32(resolution))) == resolution
-    assert grid_from_message(message(info__resolution=resolution)).resolution == resolution
+    assert map_from_message(message(info__resolution=resolution)).resolution == resolution
 
 
 BAD_MAPS = {
@@ -72,13 +80,13 @@ BAD_MAPS = {
 @pytest.mark.parametrize(('words', 'changes'), BAD_MAPS.items())
 def test_impossible_map_is_refused_with_the_value(words: str, changes: dict) -> None:
     with pytest.raises(MapError, match=words):
-        grid_from_message(message(**changes))
+        map_from_message(message(**changes))
 
 
 def test_origin_without_orientation_is_refused() -> None:
     bad = message(info__origin__orientation__z=0.0, info__origin__orientation__w=0.0)
     with pytest.raises(MapError, match='norm above 0'):
-        grid_from_message(bad)
+        map_from_message(bad)
 
 
 def test_yaw_of_an_origin_of_any_norm_is_read() -> None:
@@ -86,14 +94,14 @@ def test_yaw_of_an_origin_of_any_norm_is_read() -> None:
         info__origin__orientation__z=7.0 * math.sin(0.25),
         info__origin__orientation__w=7.0 * math.cos(0.25),
     )
-    assert grid_from_message(scaled).origin[2] == pytest.approx(0.5)
+    assert map_from_message(scaled).origin[2] == pytest.approx(0.5)
 
 
-def report_on_a_map() -> PlanResponse:
+def response_on_a_map() -> PlanResponse:
     """Return a solved request with a tree of some size."""
     data = np.zeros((60, 60), dtype=np.int8)
     data[5:55, 20] = data[5:55, 40] = 100
-    grid = Grid(data, 0.1, (3.0, 4.0, 0.3), 'map')
+    grid = OccupancyMap(data, 0.1, (3.0, 4.0, 0.3), 'map')
     space = GridSpace.from_occupancy(data, grid.resolution, grid.origin)
     start, goal = space.cell_centres(np.array([30, 30]), np.array([5, 55]))
     result = plan(space, start, goal, algorithm='rrt', seed=1, simplify=False)
@@ -104,7 +112,7 @@ def report_on_a_map() -> PlanResponse:
 
 
 def test_cloud_holds_samples_and_parents_of_the_result() -> None:
-    result = report_on_a_map().result
+    result = response_on_a_map().result
     assert result is not None and len(result.samples) > 10
     cloud = samples_message(result, 100_000, HEADER)
     points = points_in(cloud)
@@ -120,7 +128,7 @@ def test_cloud_holds_samples_and_parents_of_the_result() -> None:
 
 
 def test_capped_cloud_refers_to_its_own_points() -> None:
-    result = report_on_a_map().result
+    result = response_on_a_map().result
     assert result is not None
     points = points_in(samples_message(result, 9, HEADER))
     assert len(points) == 9
@@ -140,8 +148,8 @@ def test_cloud_without_a_result_is_empty_and_well_formed() -> None:
     assert (cloud.width, len(cloud.data), cloud.point_step) == (0, 0, LAYOUT.itemsize)
 
 
+#: Names of all lengths modulo eight: what follows them in a message moves with them.
 FRAMES = ['', 'a', 'ab', 'map', 'odom', 'floor', 'world', 'robot_1/map', 'карта']
-"""Names of all lengths modulo eight: what follows them in a message moves with them."""
 
 
 @pytest.mark.parametrize('frame', FRAMES)
@@ -159,16 +167,75 @@ def test_path_from_arrays_is_the_path_of_the_answer(frame: str, n_poses: int) ->
 
 
 @pytest.mark.parametrize('frame', FRAMES)
-def test_markers_are_whole_in_every_frame(frame: str) -> None:
-    report = report_on_a_map()
+@pytest.mark.parametrize('n_poses', [0, 2, 3, 500])
+def test_response_from_bytes_is_the_ordinary_one(frame: str, n_poses: int) -> None:
+    rows = np.random.default_rng(n_poses).normal(size=(n_poses, 7))
     header = Header(stamp=STAMP, frame_id=frame)
-    shapes = markers_of(report, header)
+    responses = PlanResponses()
+    assert responses.why_slow == ''
+    made = responses.make(rows, header)
+    assert isinstance(made, GetPlan.Response) and made.plan.poses == [], 'no object for a pose'
+    sent = deserialize_message(serialize_message(made), GetPlan.Response)
+    assert sent == GetPlan.Response(plan=path_message(rows, header))
+
+
+def test_response_is_the_ordinary_one_where_bytes_do_not_work() -> None:
+    responses = PlanResponses()
+    responses.why_slow = 'another rclpy'
+    rows = np.random.default_rng(0).normal(size=(3, 7))
+    assert responses.make(rows, HEADER).plan == path_message(rows, HEADER)
+
+
+def trajectory(n_points: int) -> Trajectory:
+    """Return a trajectory with some random points; the first ones are at rest."""
+    rng = np.random.default_rng(n_points)
+    states = rng.normal(size=(n_points, 4))
+    states[:2, 2:] = 0.0
+    return Trajectory(
+        DoubleIntegrator(dim=2),
+        np.cumsum(rng.random(n_points)),
+        states,
+        rng.normal(size=(n_points - 1, 2)),
+    )
+
+
+@pytest.mark.parametrize('frame', FRAMES)
+@pytest.mark.parametrize('n_points', [2, 3, 50])
+def test_trajectory_has_a_point_for_each_state(frame: str, n_points: int) -> None:
+    made, header = trajectory(n_points), Header(stamp=STAMP, frame_id=frame)
+    message = deserialize_message(serialised_trajectory(made, header), MultiDOFJointTrajectory)
+    assert message.header == header and message.joint_names == ['base']
+    assert len(message.points) == n_points
+    for k, point in enumerate(message.points):
+        (place,), (speed,), (pull,) = point.transforms, point.velocities, point.accelerations
+        state = [place.translation.x, place.translation.y, speed.linear.x, speed.linear.y]
+        assert state == made.states[k].tolist()
+        control = made.controls[k] if k < n_points - 1 else np.zeros(2)
+        assert [pull.linear.x, pull.linear.y] == control.tolist()
+        time = point.time_from_start
+        assert time.sec + 1e-9 * time.nanosec == pytest.approx(made.times[k], abs=1e-9)
+        way = made.states[k, 2:] if k >= 2 else control
+        if way.any():
+            yaw = 2.0 * math.atan2(place.rotation.z, place.rotation.w)
+            assert math.cos(yaw - math.atan2(way[1], way[0])) == pytest.approx(1.0)
+
+
+def test_no_trajectory_has_no_points() -> None:
+    message = deserialize_message(serialised_trajectory(None, HEADER), MultiDOFJointTrajectory)
+    assert message.points == [] and message.header == HEADER
+
+
+@pytest.mark.parametrize('frame', FRAMES)
+def test_markers_are_whole_in_every_frame(frame: str) -> None:
+    response = response_on_a_map()
+    header = Header(stamp=STAMP, frame_id=frame)
+    shapes = markers_of(response, header)
     assert all(shape.header == header for shape in shapes)
     assert [shape.points for shape in shapes] == [
-        shape.points for shape in markers_of(report, HEADER)
+        shape.points for shape in markers_of(response, HEADER)
     ]
     assert [shape.scale for shape in shapes] == [
-        shape.scale for shape in markers_of(report, HEADER)
+        shape.scale for shape in markers_of(response, HEADER)
     ]
 
 
@@ -177,15 +244,15 @@ def points_of(marker: Marker) -> np.ndarray:
     return np.array([(point.x, point.y) for point in marker.points])
 
 
-def markers_of(report: PlanResponse, header: Header = HEADER) -> list[Marker]:
-    """Return the markers of a report as a subscriber gets them."""
-    return deserialize_message(serialised_markers(report, header), MarkerArray).markers
+def markers_of(response: PlanResponse, header: Header = HEADER) -> list[Marker]:
+    """Return the markers of a response as a subscriber gets them."""
+    return deserialize_message(serialised_markers(response, header), MarkerArray).markers
 
 
 def test_markers_show_samples_tree_path_and_ends() -> None:
-    report = report_on_a_map()
-    assert report.result is not None
-    first, *shapes = markers_of(report)
+    response = response_on_a_map()
+    assert response.result is not None
+    first, *shapes = markers_of(response)
     assert first.action == Marker.DELETEALL
     by_name = {shape.ns: shape for shape in shapes}
     assert {name: shape.type for name, shape in by_name.items()} == {
@@ -195,22 +262,22 @@ def test_markers_show_samples_tree_path_and_ends() -> None:
         'start': Marker.SPHERE,
         'goal': Marker.SPHERE,
     }
-    assert len(by_name['samples'].points) == len(report.result.samples)
-    assert len(by_name['tree'].points) == 2 * (len(report.result.samples) - 1)
-    assert len(by_name['path'].points) == len(report.path)
-    assert points_of(by_name['path']).tolist() == report.path.tolist()
-    assert by_name['goal'].pose.position.x == report.path[-1][0]
+    assert len(by_name['samples'].points) == len(response.result.samples)
+    assert len(by_name['tree'].points) == 2 * (len(response.result.samples) - 1)
+    assert len(by_name['path'].points) == len(response.path)
+    assert points_of(by_name['path']).tolist() == response.path.tolist()
+    assert by_name['goal'].pose.position.x == response.path[-1][0]
     assert all(shape.header.stamp == STAMP for shape in (first, *shapes))
 
 
 def test_markers_are_capped() -> None:
-    report = report_on_a_map()
-    assert report.result is not None
+    response = response_on_a_map()
+    assert response.result is not None
     chain = np.linspace((3.0, 4.0), (4.0, 5.0), 3 * MOST_POINTS)
     parents = np.arange(-1, len(chain) - 1)
-    result = replace(report.result, samples=chain, parents=parents, path=chain)
-    report = replace(report, result=result)
-    sizes = {shape.ns: len(shape.points) for shape in markers_of(report)}
+    result = replace(response.result, samples=chain, parents=parents, path=chain)
+    response = replace(response, result=result)
+    sizes = {shape.ns: len(shape.points) for shape in markers_of(response)}
     assert sizes['samples'] == sizes['path'] == MOST_POINTS
     assert MOST_POINTS - 2 <= sizes['tree'] <= MOST_POINTS
 

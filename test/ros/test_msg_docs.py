@@ -25,8 +25,9 @@ ROOT = Path(__file__).parents[2]
 PAGES = {path.stem: path.read_text() for path in sorted((ROOT / 'msg_docs').glob('*.md'))}
 INDEX = PAGES.pop('README')
 OFFICE = ROOT / 'config' / 'maps' / 'office.yaml'
+
+#: Topics of every node, on the page of the parameters.
 BY_ITSELF = {'/parameter_events', '/rosout'}
-"""Topics of every node, on the page of the parameters."""
 
 
 @pytest.fixture(scope='module')
@@ -114,8 +115,8 @@ def in_graph(client: Client, node: str) -> set[tuple[str, str, str]]:
     }
 
 
+#: Topics that are there only while the parameter ``rviz_clicks`` says so.
 CLICKS = {'/initialpose', '/goal_pose'}
-"""Topics that are there only while the parameter `rviz_clicks` says so."""
 
 
 @pytest.mark.parametrize('node', ['hnr_planner', 'map_source'])

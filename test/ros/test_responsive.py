@@ -25,10 +25,12 @@ from rclpy.qos import QoSProfile
 MAZE = maze()
 RESOLUTION = 0.05
 MAZE_END = 0.05 * 400.5
+
+#: Seconds that a busy machine may take longer; searches here last a minute.
 SLACK = 10.0
-"""Seconds that a busy machine may take longer; searches here last a minute."""
+
+#: Ends of the maze: no search gets from one to the other in the time of these tests.
 START, GOAL = pose(0.025, 0.025), pose(MAZE_END, MAZE_END)
-"""Ends of the maze: no search gets from one to the other in the time of these tests."""
 
 
 @pytest.fixture(scope='module', autouse=True)

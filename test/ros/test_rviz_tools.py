@@ -88,6 +88,6 @@ def test_goal_is_planned_to_from_the_start_that_was_clicked(
 
 
 def ends_at(client: Client, goal: tuple[float, float]) -> list[list[float]]:
-    """Return the points of the last path if it ends at `goal`."""
+    """Return the points of the last path if it ends at ``goal``."""
     points = points_of(client.paths[-1]).tolist()
     return points if points and points[-1] == list(goal) else []

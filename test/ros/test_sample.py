@@ -18,11 +18,14 @@ import pytest
 from scipy import ndimage, stats
 from std_srvs.srv import Trigger
 
+#: Edges of cells are exact numbers in single precision: no rounding takes a point across.
 RESOLUTION, ORIGIN = 0.0625, (-2.0, 1.0, 0.0)
-"""Edges of cells are exact numbers in single precision: no rounding takes a point across."""
+
 ALPHA = 1e-6
+
+#: What takes hours, and so ends by a cancellation or by the clock.
 ENDLESS = {'sample_count': 1_000_000, 'sample_thin': 100_000, 'time_limit': 60.0}
-"""What takes hours, and so ends by a cancellation or by the clock."""
+
 USUAL = {
     'robot_radius': 0.0,
     'sample_count': 1000,

@@ -19,8 +19,9 @@ from hnr_planner.server.outcomes import Outcome
 import pytest
 
 SIGNALS = [(SIGINT,), (SIGTERM,), (SIGINT, SIGINT), (SIGINT, SIGTERM)]
+
+#: Seconds: much less than a search would last, enough for a busy machine.
 AT_ONCE = 10.0
-"""Seconds: much less than a search would last, enough for a busy machine."""
 
 
 def assert_clean_end(process: NodeProcess, *signals: signal.Signals) -> None:

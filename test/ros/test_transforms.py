@@ -25,8 +25,9 @@ needs_tf = pytest.mark.skipif(
     not find_spec('tf2_ros'), reason='tf2_ros comes with a ROS from apt only'
 )
 START, GOAL = (0.5, 0.6), (4.5, 0.7)
+
+#: Where the frame ``odom`` lies in the map.
 SHIFT, TURN = (1.0, -2.0), 0.7
-"""Where the frame `odom` lies in the map."""
 
 
 @pytest.fixture(scope='module', autouse=True)
@@ -37,7 +38,7 @@ def map_is_there(client: Client, planner: NodeProcess) -> None:
 
 
 def in_odom(x: float, y: float, yaw: float = 0.0) -> PoseStamped:
-    """Return the pose in `odom` that is at (x, y) and turned by `yaw` in the map."""
+    """Return the pose in ``odom`` that is at (x, y) and turned by ``yaw`` in the map."""
     dx, dy, cos, sin = x - SHIFT[0], y - SHIFT[1], math.cos(TURN), math.sin(TURN)
     return pose(cos * dx + sin * dy, -sin * dx + cos * dy, 'odom', yaw - TURN)
 

@@ -8,9 +8,10 @@ import sys
 import threading
 
 from hnr_planner.core import ALGORITHMS, warm_up
-from hnr_planner.server.map_store import Grid, MapStore
-from hnr_planner.server.respond import answer
-from hnr_planner.server.requests import Pose, Request
+from hnr_planner.maps import OccupancyMap
+from hnr_planner.server.map_store import MapStore
+from hnr_planner.server.respond import respond
+from hnr_planner.server.requests import PlanRequest, Pose
 from hnr_planner.server.settings import Settings
 from numba.core.dispatcher import Dispatcher
 import numpy as np
@@ -40,12 +41,12 @@ for changes in (
 ):
     settings = Settings(optimize_for=0.05, time_limit=0.5, **changes)
     maps = MapStore(settings)
-    maps.receive(lambda: Grid(rooms, 0.05, (0.0, 0.0, 0.1), 'map'))
+    maps.receive(lambda: OccupancyMap(rooms, 0.05, (0.0, 0.0, 0.1), 'map'))
     for algorithm in ALGORITHMS:
         for begin, goal in ((start, start), (start, near), (start, far), (near, far)):
             for tolerance in (0.0, 0.3):
-                request = Request(begin, goal, tolerance, algorithm)
-                answer(request, settings, maps.newest, threading.Event())
+                request = PlanRequest(begin, goal, tolerance, algorithm)
+                respond(request, settings, maps.newest, threading.Event())
 late = {f'{module}.{name}' for module, name, _ in compiled() - before}
 sys.exit(f'compiled during requests: {sorted(late)}' if late else 0)
 """

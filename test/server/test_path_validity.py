@@ -8,8 +8,8 @@ from hnr_planner.server.path_validity import first_blocked_pose
 import numpy as np
 import pytest
 
+#: Seconds: far less than a loop in Python would take.
 SLACK = 5.0
-"""Seconds: far less than a loop in Python would take."""
 
 
 def test_free_path_is_blocked_nowhere() -> None:

@@ -2,7 +2,7 @@
 
 import math
 
-from hnr_planner.ros.messages.orientations import (
+from hnr_planner.server.orientations import (
     normalised,
     product,
     quaternion_of,
@@ -11,7 +11,7 @@ from hnr_planner.ros.messages.orientations import (
     yaw_of,
 )
 from hnr_planner.server.poses import MOST_POSES, poses_along
-from hnr_planner.server.subsample import shown_samples
+from hnr_planner.server.subsample import subsample_tree
 import numpy as np
 import pytest
 
@@ -64,7 +64,7 @@ def random_tree(size: int, seed: int) -> np.ndarray:
 @pytest.mark.parametrize('limit', [0, 1, 5, 20, 99, 100, 1000])
 def test_shown_samples_have_their_own_parents(limit: int) -> None:
     parents = random_tree(100, seed=1)
-    rows, shown = shown_samples(parents, limit)
+    rows, shown = subsample_tree(parents, limit)
     assert len(rows) == min(limit, 100)
     assert np.array_equal(rows, np.unique(rows))
     for row, parent in zip(rows, shown, strict=True):
@@ -74,18 +74,18 @@ def test_shown_samples_have_their_own_parents(limit: int) -> None:
 def test_branch_of_the_last_sample_is_shown_first_and_the_earliest_next() -> None:
     #       0 - 1 - 2 - 3 - 4, and 5 grows from 0, 6 from 5
     parents = np.array([-1, 0, 1, 2, 3, 0, 5])
-    assert shown_samples(parents, 4).rows.tolist() == [0, 1, 5, 6]
-    assert shown_samples(parents, 4).parents.tolist() == [-1, 0, 0, 2]
+    assert subsample_tree(parents, 4).rows.tolist() == [0, 1, 5, 6]
+    assert subsample_tree(parents, 4).parents.tolist() == [-1, 0, 0, 2]
 
 
 def test_chain_that_does_not_fit_shows_its_beginning() -> None:
     parents = np.arange(-1, 99)
-    assert shown_samples(parents, 10).rows.tolist() == list(range(10))
+    assert subsample_tree(parents, 10).rows.tolist() == list(range(10))
 
 
 def test_two_roots_stay_roots() -> None:
     parents = np.array([-1, -1, 0, 1, 2, 3])
-    rows, shown = shown_samples(parents, 3)
+    rows, shown = subsample_tree(parents, 3)
     assert rows.tolist() == [1, 3, 5] and shown.tolist() == [-1, 0, 1]
 
 

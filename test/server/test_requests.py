@@ -8,8 +8,10 @@ import threading
 import time
 
 from hnr_planner.core import ALGORITHMS
-from hnr_planner.server.map_store import Grid, MapError, MapSnapshot, MapStore
+from hnr_planner.maps import OccupancyMap
+from hnr_planner.server.map_store import MapSnapshot, MapStore
 from hnr_planner.server.outcomes import Outcome
+from hnr_planner.server.received_maps import MapError
 from hnr_planner.server.requests import PlanRequest, Pose
 from hnr_planner.server.respond import respond
 from hnr_planner.server.responses import PlanResponse
@@ -18,11 +20,16 @@ import numpy as np
 import pytest
 
 RESOLUTION = 0.1
+
+#: Seen from the door, but not from where the paths start.
 GOAL = (3.5, 0.3)
-"""Seen from the door, but not from where the paths start."""
+
+#: Seconds that a busy machine may take longer than a time limit.
 SLACK = 5.0
-"""Seconds that a busy machine may take longer than a time limit."""
-SETTINGS = replace(DEFAULTS, seed=7, algorithm='rrt')
+
+SETTINGS = replace(
+    DEFAULTS, seed=7, algorithm='rrt', optimize_for=0.0, time_limit=600.0, map_wait=0.0
+)
 
 
 def rooms(door: bool = True) -> np.ndarray:
@@ -43,7 +50,7 @@ def store(data: np.ndarray, settings: Settings = SETTINGS, frame: str = 'map') -
 
 def receive(maps: MapStore, data: np.ndarray, frame: str = 'map') -> None:
     """Let one more map arrive."""
-    maps.receive(lambda: Grid(data, RESOLUTION, (0.0, 0.0, 0.0), frame))
+    maps.receive(lambda: OccupancyMap(data, RESOLUTION, (0.0, 0.0, 0.0), frame))
 
 
 def ask(
@@ -78,49 +85,49 @@ def ask_with(part: str, pose: Pose) -> PlanResponse:
 @pytest.mark.parametrize('algorithm', ALGORITHMS)
 def test_path_is_free_and_ends_where_asked(algorithm: str) -> None:
     data = rooms()
-    report = ask(store(data), algorithm=algorithm)
-    assert report.outcome is Outcome.SOLVED
-    assert report.path[0].tolist() == [0.5, 0.5]
-    assert report.path[-1].tolist() == list(GOAL)
-    assert report.offset == 0.0
-    assert path_collisions(report.path, data >= 65, RESOLUTION) == []
-    assert report.clearance > 0.0
-    assert report.frame == 'map'
+    response = ask(store(data), algorithm=algorithm)
+    assert response.outcome is Outcome.SOLVED
+    assert response.path[0].tolist() == [0.5, 0.5]
+    assert response.path[-1].tolist() == list(GOAL)
+    assert response.offset == 0.0
+    assert path_collisions(response.path, data >= 65, RESOLUTION) == []
+    assert response.clearance > 0.0
+    assert response.frame == 'map'
 
 
 def test_robot_radius_counts() -> None:
     narrow = replace(SETTINGS, robot_radius=0.5)
-    report = ask(store(rooms(), narrow), settings=narrow)
-    assert report.outcome is Outcome.UNREACHABLE
-    assert '(0.5, 0.5)' in report.why
+    response = ask(store(rooms(), narrow), settings=narrow)
+    assert response.outcome is Outcome.UNREACHABLE
+    assert '(0.5, 0.5)' in response.why
 
 
 def test_start_equal_to_goal_is_two_equal_points() -> None:
-    report = ask(store(rooms()), (0.5, 0.5), (0.5, 0.5))
-    assert report.outcome is Outcome.SOLVED
-    assert report.path.tolist() == [[0.5, 0.5], [0.5, 0.5]]
+    response = ask(store(rooms()), (0.5, 0.5), (0.5, 0.5))
+    assert response.outcome is Outcome.SOLVED
+    assert response.path.tolist() == [[0.5, 0.5], [0.5, 0.5]]
 
 
 def test_no_map_is_named() -> None:
-    report = ask(MapStore(SETTINGS))
-    assert report.outcome is Outcome.NO_MAP
-    assert report.path.shape == (0, 2)
-    assert report.frame == ''
+    response = ask(MapStore(SETTINGS))
+    assert response.outcome is Outcome.NO_MAP
+    assert response.path.shape == (0, 2)
+    assert response.frame == ''
 
 
 def test_refused_map_is_the_reason_when_there_is_no_other() -> None:
     maps = MapStore(SETTINGS)
     with pytest.raises(MapError, match='resolution'):
-        maps.receive(lambda: Grid(rooms(), -1.0, (0.0, 0.0, 0.0), 'map'))
-    report = ask(maps)
-    assert report.outcome is Outcome.NO_MAP
-    assert 'resolution' in report.why
+        maps.receive(lambda: OccupancyMap(rooms(), -1.0, (0.0, 0.0, 0.0), 'map'))
+    response = ask(maps)
+    assert response.outcome is Outcome.NO_MAP
+    assert 'resolution' in response.why
 
 
 def test_refused_map_leaves_the_last_good_one() -> None:
     maps = store(rooms())
     with pytest.raises(MapError, match='nan'):
-        maps.receive(lambda: Grid(rooms(), RESOLUTION, (math.nan, 0.0, 0.0), 'map'))
+        maps.receive(lambda: OccupancyMap(rooms(), RESOLUTION, (math.nan, 0.0, 0.0), 'map'))
     assert ask(maps).outcome is Outcome.SOLVED
 
 
@@ -136,27 +143,27 @@ def test_map_that_cannot_be_prepared_leaves_the_last_good_one() -> None:
 
 def test_map_under_preparation_is_named() -> None:
     maps = MapStore(SETTINGS)
-    reports = []
+    responses = []
 
-    def read_slowly() -> Grid:
-        reports.append(ask(maps))
-        return Grid(rooms(), RESOLUTION, (0.0, 0.0, 0.0), 'map')
+    def read_slowly() -> OccupancyMap:
+        responses.append(ask(maps))
+        return OccupancyMap(rooms(), RESOLUTION, (0.0, 0.0, 0.0), 'map')
 
     maps.receive(read_slowly)
-    assert reports[0].outcome is Outcome.MAP_NOT_READY
+    assert responses[0].outcome is Outcome.MAP_NOT_READY
     assert ask(maps).outcome is Outcome.SOLVED
 
 
 def test_newer_map_is_prepared_while_the_old_one_answers() -> None:
     maps = store(rooms())
-    reports = []
+    responses = []
 
-    def read_slowly() -> Grid:
-        reports.append(ask(maps))
-        return Grid(rooms(door=False), RESOLUTION, (0.0, 0.0, 0.0), 'map')
+    def read_slowly() -> OccupancyMap:
+        responses.append(ask(maps))
+        return OccupancyMap(rooms(door=False), RESOLUTION, (0.0, 0.0, 0.0), 'map')
 
     maps.receive(read_slowly)
-    assert reports[0].outcome is Outcome.SOLVED
+    assert responses[0].outcome is Outcome.SOLVED
     assert ask(maps).outcome is Outcome.UNREACHABLE
 
 
@@ -185,37 +192,37 @@ def test_changed_robot_radius_prepares_the_last_map_again() -> None:
 @pytest.mark.parametrize('part', ['start', 'goal'])
 def test_number_that_is_not_finite_is_a_bad_request(part: str, number: float) -> None:
     for bad in (Pose((number, 1.0, 0.0)), Pose((1.0, 1.0, 0.0), (0.0, 0.0, number, 1.0))):
-        report = ask_with(part, bad)
-        assert report.outcome is Outcome.BAD_REQUEST
-        assert part in report.why
-        assert str(number) in report.why
+        response = ask_with(part, bad)
+        assert response.outcome is Outcome.BAD_REQUEST
+        assert part in response.why
+        assert str(number) in response.why
 
 
 def test_goal_orientation_without_direction_is_a_bad_request() -> None:
-    report = ask(store(rooms()), goal_pose=Pose((*GOAL, 0.0), (0.0, 0.0, 0.0, 0.0)))
-    assert report.outcome is Outcome.BAD_REQUEST
-    assert 'orientation of the goal' in report.why
+    response = ask(store(rooms()), goal_pose=Pose((*GOAL, 0.0), (0.0, 0.0, 0.0, 0.0)))
+    assert response.outcome is Outcome.BAD_REQUEST
+    assert 'orientation of the goal' in response.why
 
 
 def test_goal_orientation_is_normalised() -> None:
     tiny = (0.0, 0.0, 3e-200, 4e-200)
-    report = ask(store(rooms()), goal_pose=Pose((*GOAL, 0.0), tiny))
-    assert report.goal_orientation == pytest.approx((0.0, 0.0, 0.6, 0.8))
+    response = ask(store(rooms()), goal_pose=Pose((*GOAL, 0.0), tiny))
+    assert response.goal_orientation == pytest.approx((0.0, 0.0, 0.6, 0.8))
 
 
 @pytest.mark.parametrize('tolerance', [-0.1, math.nan, math.inf])
 def test_impossible_tolerance_is_a_bad_request(tolerance: float) -> None:
-    report = ask(store(rooms()), tolerance=tolerance)
-    assert report.outcome is Outcome.BAD_REQUEST
-    assert 'tolerance' in report.why
-    assert str(tolerance) in report.why
+    response = ask(store(rooms()), tolerance=tolerance)
+    assert response.outcome is Outcome.BAD_REQUEST
+    assert 'tolerance' in response.why
+    assert str(tolerance) in response.why
 
 
 @pytest.mark.parametrize('part', ['start', 'goal'])
 def test_other_frame_is_refused_with_both_names(part: str) -> None:
-    report = ask_with(part, Pose((0.5, 0.5, 0.0), frame='odom'))
-    assert report.outcome is Outcome.BAD_FRAME
-    assert all(word in report.why for word in (part, "'odom'", "'map'"))
+    response = ask_with(part, Pose((0.5, 0.5, 0.0), frame='odom'))
+    assert response.outcome is Outcome.BAD_FRAME
+    assert all(word in response.why for word in (part, "'odom'", "'map'"))
 
 
 @pytest.mark.parametrize('point', [(2.0, 0.2), (-1.0, 0.5), (1e300, 0.5), (0.0, 0.0)])
@@ -226,27 +233,27 @@ def test_ends_that_are_not_free_are_named(point: tuple[float, float]) -> None:
 
 
 def test_tolerance_never_moves_a_goal_that_can_be_reached() -> None:
-    report = ask(store(rooms()), tolerance=2.0)
-    assert report.path[-1].tolist() == list(GOAL)
-    assert report.offset == 0.0
+    response = ask(store(rooms()), tolerance=2.0)
+    assert response.path[-1].tolist() == list(GOAL)
+    assert response.offset == 0.0
 
 
 def test_blocked_goal_gives_way_to_the_nearest_point_and_says_so() -> None:
     data = rooms()
-    report = ask(store(data), goal=(2.05, 0.25), tolerance=0.5)
-    assert report.outcome is Outcome.SOLVED
+    response = ask(store(data), goal=(2.05, 0.25), tolerance=0.5)
+    assert response.outcome is Outcome.SOLVED
     # The wall ends at x = 2.1, and the start's component is on both sides of it.
-    assert report.offset == pytest.approx(0.05, abs=1e-3)
-    assert report.path[-1].tolist() == pytest.approx([2.1, 0.25], abs=1e-3)
-    assert path_collisions(report.path, data >= 65, RESOLUTION) == []
-    assert 'moved by 0.05' in report.why
+    assert response.offset == pytest.approx(0.05, abs=1e-3)
+    assert response.path[-1].tolist() == pytest.approx([2.1, 0.25], abs=1e-3)
+    assert path_collisions(response.path, data >= 65, RESOLUTION) == []
+    assert 'moved by 0.05' in response.why
 
 
 def test_goal_in_another_room_gives_way_to_the_nearest_point_of_ours() -> None:
-    report = ask(store(rooms(door=False)), goal=(2.25, 0.55), tolerance=0.5)
-    assert report.outcome is Outcome.SOLVED
-    assert report.path[-1].tolist() == pytest.approx([1.9, 0.55], abs=1e-3)
-    assert report.offset == pytest.approx(0.35, abs=1e-3)
+    response = ask(store(rooms(door=False)), goal=(2.25, 0.55), tolerance=0.5)
+    assert response.outcome is Outcome.SOLVED
+    assert response.path[-1].tolist() == pytest.approx([1.9, 0.55], abs=1e-3)
+    assert response.offset == pytest.approx(0.35, abs=1e-3)
 
 
 def test_nothing_within_the_tolerance_keeps_the_name_of_the_failure() -> None:
@@ -260,9 +267,9 @@ def test_nothing_within_the_tolerance_keeps_the_name_of_the_failure() -> None:
 
 def test_goal_radius_ends_the_path_in_the_region() -> None:
     settings = replace(SETTINGS, goal_radius=0.4)
-    report = ask(store(rooms()), settings=settings)
-    assert report.outcome is Outcome.SOLVED
-    assert 0.0 < report.offset <= 0.4
+    response = ask(store(rooms()), settings=settings)
+    assert response.outcome is Outcome.SOLVED
+    assert 0.0 < response.offset <= 0.4
 
 
 def test_same_seed_is_the_same_path_and_a_fresh_one_is_reported() -> None:
@@ -277,9 +284,9 @@ def test_same_seed_is_the_same_path_and_a_fresh_one_is_reported() -> None:
 
 def test_iteration_limit_is_named() -> None:
     settings = replace(SETTINGS, max_iterations=100)
-    report = ask(store(maze()), (0.05, 0.05), (20.05, 20.05), settings=settings)
-    assert report.outcome is Outcome.ITERATION_LIMIT
-    assert report.result is not None and report.result.iterations == 100
+    response = ask(store(maze()), (0.05, 0.05), (20.05, 20.05), settings=settings)
+    assert response.outcome is Outcome.ITERATION_LIMIT
+    assert response.result is not None and response.result.iterations == 100
 
 
 def maze() -> np.ndarray:
@@ -293,9 +300,9 @@ def maze() -> np.ndarray:
 
 def test_time_limit_holds_and_is_named() -> None:
     settings = replace(SETTINGS, time_limit=0.2)
-    report = ask(store(maze()), (0.05, 0.05), (20.05, 20.05), settings=settings)
-    assert report.outcome is Outcome.TIMEOUT
-    assert 0.2 <= report.elapsed < 0.2 + SLACK
+    response = ask(store(maze()), (0.05, 0.05), (20.05, 20.05), settings=settings)
+    assert response.outcome is Outcome.TIMEOUT
+    assert 0.2 <= response.elapsed < 0.2 + SLACK
 
 
 def test_cancelled_search_is_named() -> None:
@@ -303,13 +310,13 @@ def test_cancelled_search_is_named() -> None:
     cancel = threading.Event()
     threading.Timer(0.2, cancel.set).start()
     settings = replace(SETTINGS, time_limit=30.0)
-    report = respond(request, settings, store(maze()).newest, cancel)
-    assert report.outcome is Outcome.CANCELLED
-    assert report.elapsed < 0.2 + SLACK
+    response = respond(request, settings, store(maze()).newest, cancel)
+    assert response.outcome is Outcome.CANCELLED
+    assert response.elapsed < 0.2 + SLACK
 
 
 class ChangingMap:
-    """The map in use, which another one replaces after it was read `reads` times."""
+    """The map in use, which another one replaces after it was read ``reads`` times."""
 
     def __init__(self, maps: MapStore, later: np.ndarray, frame: str = 'map', reads: int = 1):
         self._maps, self._later, self._frame, self._reads = maps, later, frame, reads
@@ -326,29 +333,29 @@ def test_path_that_a_newer_map_blocks_is_planned_again() -> None:
     later = rooms()
     later[2:, 30] = 100
     assert path_collisions(ask(store(rooms())).path, later >= 65, RESOLUTION) != []
-    report = ask(ChangingMap(store(rooms()), later))
-    assert report.outcome is Outcome.SOLVED
-    assert path_collisions(report.path, later >= 65, RESOLUTION) == []
+    response = ask(ChangingMap(store(rooms()), later))
+    assert response.outcome is Outcome.SOLVED
+    assert path_collisions(response.path, later >= 65, RESOLUTION) == []
 
 
 def test_path_that_a_newer_map_leaves_free_stands() -> None:
     later = np.zeros((200, 400), dtype=np.int8)
-    report = ask(ChangingMap(store(rooms()), later))
-    assert np.array_equal(report.path, ask(store(rooms())).path)
-    assert report.snapshot is not None and report.snapshot.grid.data.shape == (200, 400)
+    response = ask(ChangingMap(store(rooms()), later))
+    assert np.array_equal(response.path, ask(store(rooms())).path)
+    assert response.snapshot is not None and response.snapshot.occupancy.data.shape == (200, 400)
 
 
 def test_newer_map_without_a_way_is_told_truly() -> None:
-    report = ask(ChangingMap(store(rooms()), rooms(door=False)))
-    assert report.outcome is Outcome.UNREACHABLE
+    response = ask(ChangingMap(store(rooms()), rooms(door=False)))
+    assert response.outcome is Outcome.UNREACHABLE
     smaller = np.zeros((20, 10), dtype=np.int8)
     assert ask(ChangingMap(store(rooms()), smaller)).outcome is Outcome.INVALID_GOAL
 
 
 def test_newer_map_in_another_frame_does_not_get_the_old_path() -> None:
     goal = Pose((*GOAL, 0.0), frame='map')
-    report = ask(ChangingMap(store(rooms()), rooms(), frame='other'), goal_pose=goal)
-    assert report.outcome is Outcome.BAD_FRAME
+    response = ask(ChangingMap(store(rooms()), rooms(), frame='other'), goal_pose=goal)
+    assert response.outcome is Outcome.BAD_FRAME
 
 
 def test_no_time_for_another_path_is_named() -> None:
@@ -362,10 +369,10 @@ def test_no_time_for_another_path_is_named() -> None:
             receive(maps, rooms(door=False))
         return maps.newest()
 
-    report = ask(newest, settings=replace(SETTINGS, time_limit=0.3))
-    assert report.outcome is Outcome.MAP_CHANGED
-    assert '0.3 s' in report.why
-    assert report.path.shape == (0, 2)
+    response = ask(newest, settings=replace(SETTINGS, time_limit=0.3))
+    assert response.outcome is Outcome.MAP_CHANGED
+    assert '0.3 s' in response.why
+    assert response.path.shape == (0, 2)
 
 
 def test_maps_that_go_on_changing_end_in_time() -> None:
@@ -380,6 +387,6 @@ def test_maps_that_go_on_changing_end_in_time() -> None:
         turns.reverse()
         return maps.newest()
 
-    report = ask(newest, settings=replace(SETTINGS, time_limit=0.3))
-    assert report.outcome is Outcome.MAP_CHANGED
-    assert report.elapsed < 0.3 + SLACK
+    response = ask(newest, settings=replace(SETTINGS, time_limit=0.3))
+    assert response.outcome is Outcome.MAP_CHANGED
+    assert response.elapsed < 0.3 + SLACK

@@ -12,12 +12,12 @@ import pytest
 @pytest.mark.parametrize('outcome', [Outcome.UNREACHABLE, Outcome.ITERATION_LIMIT])
 def test_without_a_path_its_measures_are_not_numbers(outcome: Outcome) -> None:
     if outcome is Outcome.UNREACHABLE:
-        report = ask(store(rooms(door=False)))
+        response = ask(store(rooms(door=False)))
     else:
         settings = replace(SETTINGS, max_iterations=100)
-        report = ask(store(maze()), (0.05, 0.05), (20.05, 20.05), settings=settings)
-    assert report.outcome is outcome
-    values = report.values
+        response = ask(store(maze()), (0.05, 0.05), (20.05, 20.05), settings=settings)
+    assert response.outcome is outcome
+    values = response.values
     assert [values[name] for name in ('length', 'clearance', 'offset')] == ['nan'] * 3
     assert values['first_solution_length'] == 'nan'
 

@@ -5,7 +5,8 @@ import math
 from pathlib import Path
 from typing import Any
 
-from hnr_planner.server.settings import DEFAULTS, RULES, Settings, SettingsError
+from hnr_planner.server.rules import SettingsError
+from hnr_planner.server.settings import DEFAULTS, RULES, Settings
 import pytest
 import yaml
 
@@ -14,9 +15,14 @@ CONFIG = Path(__file__).parents[2] / 'config' / 'hnr_planner.yaml'
 
 def test_configuration_holds_every_parameter_with_its_default() -> None:
     configured = yaml.safe_load(CONFIG.read_text())['/**/hnr_planner']['ros__parameters']
-    assert configured == dataclasses.asdict(DEFAULTS)
+    # A file has lists, a frozen value has tuples.
+    defaults = {
+        name: list(value) if isinstance(value, tuple) else value
+        for name, value in dataclasses.asdict(DEFAULTS).items()
+    }
+    assert configured == defaults
     for name, value in configured.items():
-        assert type(value) is type(getattr(DEFAULTS, name)), name
+        assert type(value) is type(defaults[name]), name
 
 
 def test_configuration_states_units_and_ranges() -> None:
@@ -55,6 +61,7 @@ def test_configuration_states_units_and_ranges() -> None:
         ('sample_walk', 'drunk', 'hit_and_run'),
         ('sample_radius', -0.1, '0..1000 m'),
         ('sample_thin', 0, '1..100000'),
+        ('map_wait', -1.0, '0..3600 s'),
     ],
 )
 def test_impossible_value_is_refused_with_value_and_rule(
@@ -65,6 +72,24 @@ def test_impossible_value_is_refused_with_value_and_rule(
     assert name in str(refusal.value)
     assert repr(value) in str(refusal.value)
     assert words in str(refusal.value)
+
+
+@pytest.mark.parametrize('alias', ['GridBased', ':auto', 'GridBased:a_star', 'GridBased:'])
+def test_alias_of_no_algorithm_is_refused_with_value_and_rule(alias: str) -> None:
+    with pytest.raises(SettingsError) as refusal:
+        dataclasses.replace(DEFAULTS, planner_aliases=('ok:rrt', alias))
+    assert repr(alias) in str(refusal.value)
+    assert 'NAME:ALGORITHM' in str(refusal.value) and 'hit_and_run' in str(refusal.value)
+
+
+def test_aliases_may_be_none() -> None:
+    assert dataclasses.replace(DEFAULTS, planner_aliases=('',)).aliases == {}
+    assert dataclasses.replace(DEFAULTS, planner_aliases=()).aliases == {}
+
+
+def test_first_map_is_awaited_within_the_time_limit() -> None:
+    assert Settings(map_wait=5.0, time_limit=0.5).patience == 0.5
+    assert Settings(map_wait=0.2, time_limit=0.5).patience == 0.2
 
 
 def test_no_seed_and_no_limit_reach_the_planner_as_none() -> None:

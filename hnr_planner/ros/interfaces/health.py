@@ -1,4 +1,4 @@
-"""The node's health, as diagnostic viewers show it, once a second on `/diagnostics`."""
+"""The node's health, as diagnostic viewers show it, once a second on ``/diagnostics``."""
 
 from collections.abc import Callable
 
@@ -11,22 +11,22 @@ from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
 from rclpy.clock import Clock, ClockType
 from rclpy.node import Node
 
+#: Seconds from one message to the next, by the steady clock: a simulation that stands is seen.
 PERIOD = 1.0
-"""Seconds from one report to the next, by the steady clock: a simulation that stands is seen."""
 
 
 class Health:
     """
-    Reports whether the node can plan, or why not, and what it has done so far.
+    Publishes whether the node can plan, or why not, and what it has done so far.
 
     Parameters
     ----------
     node : Node
-        Whose health it is.
+        The node that the health is of.
     find_map_input : callable
-        Returns where maps come from now, or raises Refusal.
+        Returns the input of maps, or raises Refusal.
     server : RequestServer
-        Whose requests are counted.
+        Counts the requests.
 
     """
 
@@ -39,16 +39,15 @@ class Health:
         self._publisher = node.create_publisher(DiagnosticArray, '/diagnostics', 10)
         node.create_timer(
             PERIOD,
-            self._report,
+            self._publish,
             callback_group=MutuallyExclusiveCallbackGroup(),
             clock=Clock(clock_type=ClockType.STEADY_TIME),
         )
 
-    def _report(self) -> None:
+    def _publish(self) -> None:
         try:
             self._server.searches.check_enabled()
-            values, state = self._map_values(), 'ready'
-            ready = True
+            ready, state, values = True, 'ready', self._map_values()
         except Refusal as refusal:
             ready, state, values = False, f'{refusal.outcome.name}: {refusal.why}', {}
         name = f'{self._node.get_fully_qualified_name()}: planner'
@@ -57,9 +56,9 @@ class Health:
         self._publisher.publish(health_message(ready, name, state, values, stamp))
 
     def _map_values(self) -> dict[str, str]:
-        """Return what is to be known about the map in use, or raise Refusal."""
+        """Return size, frame and age of the map in use, or raise Refusal."""
         map_input = self._find_map_input()
-        return {'map': str(map_input.newest().grid), 'map_age': f'{map_input.age:.1f}'}
+        return {'map': str(map_input.newest().occupancy), 'map_age': f'{map_input.age:.1f}'}
 
     def _request_values(self) -> dict[str, str]:
         """Return how many requests there were, how they ended, and how long they took."""

@@ -1,31 +1,33 @@
 """
-What Nav2 asks its planner server for: two actions and a service, where `nav2_msgs` is there.
+Two actions and a service of Nav2's planner server, where ``nav2_msgs`` is installed.
 
 Each action has one goal at a time, as in Nav2: a new one takes the place of the one before.
 """
 
 from collections.abc import Callable, Sequence
-from contextlib import suppress
 import threading
 import time
 from typing import Any
 
 from builtin_interfaces.msg import Duration
 from geometry_msgs.msg import PoseStamped
-from hnr_planner.ros.interfaces.nav2_goals import error_of, from_robot_on, request_of, robot_pose
 from hnr_planner.ros.interfaces.request_server import RequestServer
+from hnr_planner.ros.messages.paths import path_message, points_from_path, pose_from_message
+from hnr_planner.server.nav2 import error_name, goal_request, robot_pose
 from hnr_planner.server.outcomes import Refusal
-from hnr_planner.server.path_validity import blocked_poses
-from hnr_planner.server.respond import NewestMap, ToFrame
+from hnr_planner.server.path_validity import judge_path
+from hnr_planner.server.request_log import shortened
+from hnr_planner.server.requests import PlanRequest, Pose
+from hnr_planner.server.respond import ToFrame
 from hnr_planner.server.responses import PlanResponse
 from hnr_planner.server.settings import Settings
-from nav_msgs.msg import Path
-import numpy as np
+from hnr_planner.server.waiting import NewestMap
 from rclpy.action import ActionServer, CancelResponse
 from rclpy.action.server import ServerGoalHandle
 from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.duration import Duration as RclpyDuration
 from rclpy.node import Node
+from std_msgs.msg import Header
 
 try:
     from nav2_msgs.action import ComputePathThroughPoses, ComputePathToPose
@@ -35,15 +37,16 @@ except ImportError:  # a ROS from wheels has none
 else:
     HAVE_NAV2 = True
 
+#: How long [s] a result waits to be fetched, as in Nav2: a path is large.
 RESULTS_KEPT = 10
-"""How long [s] a result waits to be fetched, as in Nav2: a path is large."""
+
+#: How long [s] rclpy may take to enter the cancellation that it has announced.
 LONGEST_CHANGE = 1.0
-"""How long [s] rclpy may take to enter the cancellation that it has announced."""
 
 
 class Nav2Server:
     """
-    Serves `compute_path_to_pose`, `compute_path_through_poses` and `is_path_valid`.
+    Serves ``compute_path_to_pose``, ``compute_path_through_poses`` and ``is_path_valid``.
 
     Parameters
     ----------
@@ -56,7 +59,7 @@ class Nav2Server:
     newest_map : callable
         Returns the map in use, or raises Refusal.
     to_frame : callable
-        Brings a pose into a frame, or raises Refusal.
+        Transforms a pose into a frame, or raises Refusal.
 
     """
 
@@ -84,28 +87,32 @@ class Nav2Server:
     def _judge(
         self, request: 'IsPathValid.Request', response: 'IsPathValid.Response'
     ) -> 'IsPathValid.Response':
-        """Say whether a path is free on the newest map, from where the robot is."""
+        """Check a path on the newest map, from where the robot is; the log has the reason."""
         response.is_valid = False
         try:
             snapshot = self._newest_map()
         except Refusal as refusal:
-            self._logger.warning(f'is_path_valid: {refusal.outcome.name}: {refusal.why}')
-            return response
-        places = [stamped.pose.position for stamped in request.path.poses]
-        points = np.array([(place.x, place.y) for place in places]).reshape(-1, 2)
-        frame = request.path.header.frame_id or snapshot.frame
-        blocked = blocked_poses(points, frame, snapshot)
-        with suppress(Refusal):  # no word of where the robot is: all of the path counts
-            robot = self._to_frame(robot_pose(self._settings()), snapshot.frame)
-            passed = from_robot_on(points, robot) if len(points) else 0
-            blocked = [number for number in blocked if number >= passed]
-        response.is_valid = len(points) > 0 and not blocked
-        response.invalid_pose_indices = blocked
+            why = f'{refusal.outcome.name}: {refusal.why}'
+        else:
+            points, frame = points_from_path(request.path), request.path.header.frame_id
+            verdict = judge_path(points, frame, snapshot, self._find_robot(snapshot.frame))
+            response.is_valid = not verdict.why
+            response.invalid_pose_indices = verdict.blocked
+            why = verdict.why
+        if why:
+            self._logger.warning(shortened(f'is_path_valid: {why}'))
         return response
+
+    def _find_robot(self, frame: str) -> Pose | None:
+        """Return where the robot is in a frame; None where no transform says so."""
+        try:
+            return self._to_frame(robot_pose(self._settings()), frame)
+        except Refusal:
+            return None
 
 
 class _Goal:
-    """A goal under way; its search ends when `cancel` is set, for one of two reasons."""
+    """A goal under way; its search ends when ``cancel`` is set, for one of two reasons."""
 
     def __init__(self) -> None:
         self.cancel = threading.Event()
@@ -122,7 +129,7 @@ class _Action:
     node : Node
         Offers it.
     kind : type
-        Its type, of `nav2_msgs`.
+        Its type, of ``nav2_msgs``.
     name : str
         Its name.
     poses_of : callable
@@ -184,28 +191,36 @@ class _Action:
         """Plan for a goal, bring it to its end and return its result."""
         goal = self._goals[_key(handle)]
         handle.publish_feedback(self._kind.Feedback())
-        request = request_of(handle.request, self._poses_of(handle.request), self._settings())
-        report, path = self._server.plan(self._name, request, goal.cancel)
-        self._server.answer_sent()  # the result leaves when this returns
+        response, header = self._server.plan(
+            self._name, self._request(handle.request), goal.cancel
+        )
+        self._server.response_sent()  # the result leaves when this returns
         with self._one_at_a_time:
             del self._goals[_key(handle)]
         if goal.cancelled:
             _wait_for_cancellation(handle)
         if handle.is_cancel_requested:
             handle.canceled()
-        elif report.solved:
+        elif response.solved:
             handle.succeed()
         else:
             handle.abort()
-        return self._result(report, path, goal.preempted)
+        return self._result(response, header, goal.preempted)
 
-    def _result(self, report: PlanResponse, path: Path, preempted: bool) -> Any:
+    def _request(self, goal: Any) -> PlanRequest:
+        """Return the request that a goal stands for."""
+        start = pose_from_message(goal.start) if goal.use_start else None
+        poses = [pose_from_message(pose) for pose in self._poses_of(goal)]
+        return goal_request(start, poses, goal.planner_id, self._settings())
+
+    def _result(self, response: PlanResponse, header: Header, preempted: bool) -> Any:
         """Return the result of a goal."""
-        result = self._kind.Result(path=path, planning_time=_duration(report.elapsed))
-        result.error_code = getattr(result, error_of(report))
-        if not report.solved:
-            why = 'a newer goal took its place' if preempted else report.why
-            result.error_msg = f'{report.outcome.name}: {why}'
+        path = path_message(response.poses, header)
+        result = self._kind.Result(path=path, planning_time=_duration(response.elapsed))
+        result.error_code = getattr(result, error_name(response))
+        if not response.solved:
+            why = 'a newer goal took its place' if preempted else response.why
+            result.error_msg = f'{response.outcome.name}: {why}'
         return result
 
 
@@ -221,5 +236,5 @@ def _wait_for_cancellation(handle: ServerGoalHandle) -> None:
 
 
 def _duration(seconds: float) -> Duration:
-    """Return a length of time as a message."""
+    """Return a length of time [s] as a message."""
     return RclpyDuration(nanoseconds=round(1e9 * seconds)).to_msg()

@@ -1,4 +1,4 @@
-"""Everything that is told about a request once it is answered, by a thread of its own."""
+"""Logs and publishes how each request ended, after its response, in a thread of its own."""
 
 from collections import deque
 from itertools import chain
@@ -9,6 +9,7 @@ from builtin_interfaces.msg import Time as TimeMessage
 from diagnostic_msgs.msg import DiagnosticArray
 from hnr_planner.ros.interfaces.publications import Publication, TOPICS
 from hnr_planner.ros.messages.outcomes import outcome_message
+from hnr_planner.server.request_log import LogEntry
 from hnr_planner.server.responses import PlanResponse
 from rclpy.clock import Clock
 from rclpy.duration import Duration
@@ -16,17 +17,21 @@ from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.time import Time
 
+#: Outcomes that late subscribers get.
 OUTCOMES_KEPT = 100
+
+#: How long the last message of a topic is given to arrive when the node ends.
 LONGEST_DELIVERY = Duration(seconds=0.2)
-"""How long the last message of a topic is given to arrive when the node ends."""
+
+#: How long [s] a publication waits for its response to be sent, while later ones are sent already.
 LONGEST_HOLD = 0.1
-"""How long [s] a result waits for its answer to be sent, while later ones are sent already."""
+
+#: Publications that may wait; with more, samples and markers (pictures for people) are left out.
 LONGEST_BACKLOG = 20
-"""Results that may wait; with more, samples and markers (pictures for people) are left out."""
 
 
 def latched(depth: int) -> QoSProfile:
-    """Return the profile of a topic whose last `depth` messages reach late subscribers."""
+    """Return the profile of a topic whose last ``depth`` messages reach late subscribers."""
     return QoSProfile(
         depth=depth,
         durability=DurabilityPolicy.TRANSIENT_LOCAL,
@@ -38,9 +43,9 @@ class Publisher:
     """
     Logs and publishes how each request ended, in the order of the stamps.
 
-    No answer waits for that: `hand_over` costs the caller nothing but a place in a queue, and the
-    thread that works it off wakes when `answer_sent` says that an answer is on its way. Whoever
-    hands over has to say so.
+    No response waits for that: ``hand_over`` costs the caller nothing but a place in a queue, and
+    the thread that works it off wakes at ``response_sent``, which has to be called by the thread
+    that handed over once its response is on its way.
     """
 
     def __init__(self, node: Node) -> None:
@@ -54,33 +59,34 @@ class Publisher:
         }
         self._pictures = True
         self._in_order = threading.Lock()
-        self._answering = _Answering()
+        self._responding = _Responding()
         self._waiting: deque[tuple[Publication, threading.Event]] = deque()
         self._wake: queue.SimpleQueue[bool] = queue.SimpleQueue()
         self._thread = threading.Thread(target=self._publish_all, name='publish', daemon=True)
         self._thread.start()
 
-    def hand_over(self, result: Publication) -> None:
-        """Stamp the header of a result, and tell all about it soon."""
-        self._answering.sent = sent = threading.Event()
+    def hand_over(self, publication: Publication) -> None:
+        """Stamp the header of a publication, and log and publish it soon."""
+        self._responding.sent = sent = threading.Event()
         with self._in_order:
-            result.header.stamp = self._stamps.later()
-            self._waiting.append((result, sent))
+            publication.header.stamp = self._stamps.later()
+            self._waiting.append((publication, sent))
 
-    def answer_sent(self) -> None:
-        """Say that the answer has been sent whose result this thread has handed over."""
-        if self._answering.sent is not None:
-            self._answering.sent.set()
-            self._answering.sent = None
+    def response_sent(self) -> None:
+        """Release the publication that this thread has handed over last."""
+        if self._responding.sent is not None:
+            self._responding.sent.set()
+            self._responding.sent = None
             self._wake.put(True)
 
-    def announce(self, report: PlanResponse, name: str) -> None:
+    def announce(self, response: PlanResponse, caller: str) -> None:
         """Publish an outcome that no request asked for."""
+        name = f'{self._name}/{caller}'
         with self._in_order:
-            self._outcome.publish(outcome_message(report, name, self._stamps.later()))
+            self._outcome.publish(outcome_message(response, name, self._stamps.later()))
 
     def leave_out_pictures(self) -> None:
-        """Publish no more samples and markers: the last answers must not queue behind them."""
+        """Publish no more samples and markers: the last responses must not wait for them."""
         self._pictures = False
 
     def close(self) -> None:
@@ -92,42 +98,40 @@ class Publisher:
 
     def _publish_all(self) -> None:
         while self._wake.get():
-            self._tell_next()
+            self._publish_next()
         while self._waiting:
-            self._tell_next()
+            self._publish_next()
 
-    def _tell_next(self) -> None:
-        result, sent = self._waiting.popleft()
+    def _publish_next(self) -> None:
+        publication, sent = self._waiting.popleft()
         sent.wait(LONGEST_HOLD)
         try:
-            self._log(result)
-            self._publish(result)
+            self._log(publication.log)
+            self._publish(publication)
         except Exception as error:  # must not stop those that follow
-            self._logger.error(f'could not tell about a result: {error!r}')
+            self._logger.error(f'a publication failed: {error!r}')
 
-    def _log(self, result: Publication) -> None:
-        """Say in one line how a request ended."""
-        caller, report = result.caller, result.report
-        if result.remark:
-            self._logger.info(f'{caller}: {result.remark}')
-        text = f'{caller}: {report.outcome.name} after {report.elapsed:.3f} s: {report.why}'
-        if report.outcome.is_success:
-            self._logger.info(text)
+    def _log(self, entry: LogEntry) -> None:
+        # A line of source for each level: rclpy refuses to log at two levels from one.
+        if entry.level == 'warning':
+            self._logger.warning(entry.text)
+        elif entry.level == 'info':
+            self._logger.info(entry.text)
         else:
-            self._logger.warning(text)
+            self._logger.debug(entry.text)
 
-    def _publish(self, result: Publication) -> None:
-        header, name = result.header, f'{self._name}/{result.caller}'
-        self._outcome.publish(outcome_message(result.report, name, header.stamp))
-        messages = result.messages()
+    def _publish(self, publication: Publication) -> None:
+        header, name = publication.header, f'{self._name}/{publication.caller}'
+        self._outcome.publish(outcome_message(publication.response, name, header.stamp))
+        messages = publication.messages()
         if self._pictures and len(self._waiting) <= LONGEST_BACKLOG:
-            messages = chain(messages, result.pictures())
+            messages = chain(messages, publication.pictures())
         for topic, message in messages:
             self._publishers[topic].publish(message)
 
 
-class _Answering(threading.local):
-    """The event of the answer that a thread is about to send."""
+class _Responding(threading.local):
+    """The event of the response that a thread is about to send."""
 
     def __init__(self) -> None:
         self.sent: threading.Event | None = None

@@ -1,58 +1,55 @@
-"""The way of a request through the node, whoever sends it: gate, work, count, tell, publish."""
+"""The planning server on ROS: responses as messages, and publications about each."""
 
 from collections.abc import Callable
 import threading
-import traceback
-from typing import NamedTuple, TypeVar
+from typing import NamedTuple
 
 from builtin_interfaces.msg import Time
-from hnr_planner.ros.interfaces.path_monitor import PathMonitor
 from hnr_planner.ros.interfaces.publications import PlanPublication, SamplePublication
-from hnr_planner.ros.interfaces.publisher import Publisher
-from hnr_planner.ros.interfaces.sampling import draw
-from hnr_planner.ros.messages.paths import path_message, pose_rows
-from hnr_planner.server.outcomes import Outcome, Refusal
+from hnr_planner.ros.interfaces.publisher import latched, Publisher
+from hnr_planner.server.path_monitor import PathMonitor
+from hnr_planner.server.planning_server import PlanningServer
+from hnr_planner.server.request_log import RequestLog
 from hnr_planner.server.requests import PlanRequest
-from hnr_planner.server.respond import NewestMap, respond, ToFrame
-from hnr_planner.server.responses import PlanResponse, Response, SampleResponse
-from hnr_planner.server.searches import RunningSearches
+from hnr_planner.server.respond import ToFrame
+from hnr_planner.server.responses import PlanResponse, SampleResponse
 from hnr_planner.server.settings import Settings
-from hnr_planner.server.statistics import Statistics
-from nav_msgs.msg import Path
+from hnr_planner.server.waiting import NewestMap
 from rclpy.node import Node
-from std_msgs.msg import Header
+from std_msgs.msg import Bool, Header
 
-Some = TypeVar('Some', bound=Response)
-
-
-class Answer(NamedTuple):
-    """What came of a request, and its path as a message: stamped, empty after a failure."""
-
-    report: PlanResponse
-    path: Path
+#: The topic on which it is published whether the last path is still free.
+PATH_VALID = 'path_valid'
 
 
-class Drawn(NamedTuple):
-    """What came of a request for draws, and the stamp of all that is published about it."""
+class Planned(NamedTuple):
+    """A response, and the header of its path: stamped, also after a failure."""
 
-    report: SampleResponse
+    response: PlanResponse
+    header: Header
+
+
+class Sampled(NamedTuple):
+    """A response, and the stamp of all that is published about it."""
+
+    response: SampleResponse
     stamp: Time
 
 
 class RequestServer:
     """
-    Answers requests for paths and for draws; any number of threads may ask at once.
+    Responds to requests for paths and for draws; any number of threads may ask at once.
 
     Parameters
     ----------
     node : Node
-        Whose log and topics are used.
+        Has the log and the topics.
     settings : callable
         Returns the parameters in force.
     newest_map : callable
         Returns the map in use, or raises Refusal.
     to_frame : callable
-        Brings a pose into the frame of the map, or raises Refusal.
+        Transforms a pose into the frame of the map, or raises Refusal.
 
     """
 
@@ -63,86 +60,89 @@ class RequestServer:
         newest_map: NewestMap,
         to_frame: ToFrame,
     ) -> None:
-        self._node = node
+        self._logger = node.get_logger()
         self._settings = settings
-        self._newest_map = newest_map
-        self._to_frame = to_frame
-        self._publications = Publisher(node)
+        self._server = PlanningServer(settings, newest_map, to_frame, self._log_defect)
+        self._publisher = Publisher(node)
+        self._log = RequestLog()
+        self._path_valid = node.create_publisher(Bool, f'~/{PATH_VALID}', latched(1))
         self._in_order = threading.Lock()
-        self.watch = PathMonitor(node, self._publications, newest_map)
-        self.searches = RunningSearches()
-        self.statistics = Statistics()
+        self.path_monitor = PathMonitor(newest_map, self._report_path)
+        self.searches = self._server.searches
+        self.statistics = self._server.statistics
 
     def plan(
         self, caller: str, request: PlanRequest, cancel: threading.Event | None = None
-    ) -> Answer:
+    ) -> Planned:
         """
-        Return the answer to `request`; all about it is published soon.
+        Respond to ``request``; all about it is published once ``response_sent`` was called.
 
         Parameters
         ----------
         caller : str
             Service, action or topic that the request came by.
-        request : Request
-            What is asked for.
+        request : PlanRequest
+            The request as it arrived.
         cancel : threading.Event, optional
             Ends this search when it is set.
 
         """
-        settings, cancel = self._settings(), cancel or threading.Event()
-        report = self._counted(
-            cancel,
-            lambda: respond(request, settings, self._newest_map, cancel, self._to_frame),
-            lambda refusal: PlanResponse(refusal.outcome, refusal.why, request),
-        )
-        poses, header = pose_rows(report, settings.pose_spacing), Header(frame_id=report.frame)
-        path = path_message(poses, header)
-        result = PlanPublication(caller, report, header, request, poses, settings.samples_max)
+        settings = self._settings()
+        response = self._server.plan(request, cancel)
+        header = Header(frame_id=response.frame)
+        remark = ''
+        if request.omits_start:
+            remark = 'the start is (0, 0) in no frame, as if left out: taken literally'
+        log = self._log.entry(caller, response, settings.time_limit, remark)
         with self._in_order:
-            self._publications.hand_over(result)
-            self.watch.follow(report)
-        return Answer(report, path)
+            self._publisher.hand_over(
+                PlanPublication(caller, response, header, log, settings.samples_max)
+            )
+            self.path_monitor.follow(response)
+        return Planned(response, header)
 
-    def sample(self, caller: str) -> Drawn:
-        """Return the answer to a request for draws, which came by `caller`; likewise."""
-        settings, cancel = self._settings(), threading.Event()
-        report = self._counted(
-            cancel,
-            lambda: draw(settings, self._newest_map, cancel),
-            lambda refusal: SampleResponse(refusal.outcome, refusal.why, settings),
-        )
-        header = Header(frame_id=report.frame)
-        self._publications.hand_over(SamplePublication(caller, report, header))
-        return Drawn(report, header.stamp)
+    def sample(self, caller: str) -> Sampled:
+        """
+        Draw the free space; all about it is published once ``response_sent`` was called.
 
-    def answer_sent(self) -> None:
-        """Say that the answer that this thread got last is on its way to whoever asked."""
-        self._publications.answer_sent()
+        Parameters
+        ----------
+        caller : str
+            Service that the request came by.
+
+        """
+        response = self._server.sample()
+        header = Header(frame_id=response.frame)
+        log = self._log.entry(caller, response, self._settings().time_limit)
+        self._publisher.hand_over(SamplePublication(caller, response, header, log))
+        return Sampled(response, header.stamp)
+
+    def response_sent(self) -> None:
+        """Release what is published about the response that this thread got last."""
+        self._publisher.response_sent()
+
+    def start(self) -> None:
+        """Admit searches."""
+        self._log.start()
+        self.searches.enable()
 
     def end(self) -> None:
-        """Let no more searches in, end those that run, and publish no more pictures."""
-        self._publications.leave_out_pictures()
+        """Admit no more searches, end those that run, and publish no more pictures."""
+        self._publisher.leave_out_pictures()
         self.searches.disable()
 
     def close(self) -> None:
-        """Publish the last results."""
-        self._publications.close()
+        """Publish what still waits to be published."""
+        self._publisher.close()
 
-    def _counted(
-        self,
-        cancel: threading.Event,
-        work: Callable[[], Some],
-        refused: Callable[[Refusal], Some],
-    ) -> Some:
-        """Return the report of `work`, or one about why there is none, even for a defect in it."""
-        try:
-            with self.searches.one(cancel):
-                report = work()
-        except Refusal as refusal:
-            report = refused(refusal)
-        except Exception as error:  # without an answer the caller would wait for ever
-            self._node.get_logger().error(f'a defect of the planner:\n{traceback.format_exc()}')
-            why = f'a defect of the planner, please report it: {error!r}'
-            report = refused(Refusal(Outcome.INTERNAL_ERROR, why))
-        self.statistics.count(report)
-        return report
+    def _log_defect(self, traceback: str) -> None:
+        self._logger.error(f'a defect of the planner:\n{traceback}')
+
+    def _report_path(self, valid: bool, why: str, changed: PlanResponse | None) -> None:
+        """Publish whether the last path is free, and the outcome of a map that blocks it."""
+        self._path_valid.publish(Bool(data=valid))
+        if changed is not None:
+            self._logger.warning(f'{PATH_VALID}: {why}')
+            self._publisher.announce(changed, PATH_VALID)
+        elif why:
+            self._logger.info(f'{PATH_VALID}: {why}')

@@ -1,4 +1,4 @@
-"""The click tools of RViz: "2D Pose Estimate" keeps a start, "2D Goal Pose" plans."""
+"""The tools of RViz: "2D Pose Estimate" keeps a start, "2D Goal Pose" plans from it."""
 
 from collections.abc import Callable
 
@@ -11,12 +11,13 @@ from rclpy.callback_groups import CallbackGroup
 from rclpy.node import Node
 from rclpy.subscription import Subscription
 
+#: Topics of the two tools.
 START, GOAL = 'initialpose', 'goal_pose'
 
 
 class RvizTools:
     """
-    Plans from the last start that was clicked to each goal that is, while `listen` says so.
+    Plans from the last start that was clicked to each goal that is clicked.
 
     Parameters
     ----------
@@ -46,7 +47,7 @@ class RvizTools:
         self._subscriptions: list[Subscription] = []
 
     def listen(self, wanted: bool) -> None:
-        """Listen to clicks or not; a start that was kept is forgotten with the listening."""
+        """Subscribe to the tools or not; without subscriptions the start is forgotten."""
         if wanted and not self._subscriptions:
             self._subscriptions = [
                 self._node.create_subscription(

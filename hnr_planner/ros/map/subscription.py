@@ -1,4 +1,4 @@
-"""The subscription to `map`, which adapts to what the publisher offers."""
+"""The subscription to ``map``, which adapts to what the publisher offers."""
 
 from collections.abc import Callable
 import threading
@@ -18,18 +18,20 @@ from rclpy.qos import (
 )
 from rclpy.subscription import Subscription
 
+#: The relative name of the topic.
 TOPIC = 'map'
+
+#: Seconds between looks at whether the subscription can be as preferred again.
 LOOK_EVERY = 1.0
-"""Seconds between looks at whether the subscription can be as wished again."""
 
 
 class MapSubscription:
     """
-    One subscription to the map, reliable and, if wished, transient local.
+    One subscription to the map, reliable and, if preferred, transient local.
 
-    A publisher that offers less is named in a warning, and the subscription is made anew with
-    what is offered; once every publisher offers what was wished, it goes back to that. All this
-    happens in one callback group, whose callbacks exclude each other.
+    When a publisher offers less, a warning says so, and the subscription is made anew with what is
+    offered; once every publisher offers what was preferred, it goes back to that. All this happens
+    in one callback group, whose callbacks exclude each other.
     """
 
     def __init__(
@@ -43,10 +45,10 @@ class MapSubscription:
         self._receive = receive
         self._group = group
         durability = DurabilityPolicy.TRANSIENT_LOCAL if transient_local else _VOLATILE
-        self._wished = _profile(durability, ReliabilityPolicy.RELIABLE)
+        self._preferred = _profile(durability, ReliabilityPolicy.RELIABLE)
         self._one_at_a_time = threading.Lock()
         self._closed = False
-        self._subscription = self._subscribe(self._wished)
+        self._subscription = self._subscribe(self._preferred)
         self._timer = node.create_timer(
             LOOK_EVERY,
             self._go_back_if_possible,
@@ -60,28 +62,28 @@ class MapSubscription:
         return str(self._subscription.topic_name)
 
     def close(self) -> None:
-        """Listen no more."""
+        """Subscribe no more."""
         with self._one_at_a_time:
             self._closed = True
             self._node.destroy_timer(self._timer)
             self._node.destroy_subscription(self._subscription)
 
     def _go_back_if_possible(self) -> None:
-        """Subscribe as wished again when all publishers that are there now allow it."""
-        if self._subscription.qos_profile.durability == self._wished.durability and (
-            self._subscription.qos_profile.reliability == self._wished.reliability
+        """Subscribe as preferred again when all publishers that are there now allow it."""
+        if self._subscription.qos_profile.durability == self._preferred.durability and (
+            self._subscription.qos_profile.reliability == self._preferred.reliability
         ):
             return
         publishers = self._node.get_publishers_info_by_topic(self.topic)
-        if publishers and all(_serves(info.qos_profile, self._wished) for info in publishers):
+        if publishers and all(_serves(info.qos_profile, self._preferred) for info in publishers):
             self._node.get_logger().info(
-                f'{self.topic}: every publisher offers {_in_words(self._wished)} now; subscribed '
-                'that way again'
+                f'{self.topic}: every publisher offers {_in_words(self._preferred)} now; '
+                'subscribed that way again'
             )
-            self._replace(self._wished)
+            self._replace(self._preferred)
 
     def _accept_less(self, event: QoSRequestedIncompatibleQoSInfo) -> None:
-        """Subscribe with what an incompatible publisher offers, and say so."""
+        """Subscribe with what an incompatible publisher offers, and log a warning."""
         now = self._subscription.qos_profile
         durability, reliability = now.durability, now.reliability
         if event.last_policy_kind == QoSPolicyKind.DURABILITY:
@@ -127,9 +129,9 @@ def _profile(durability: DurabilityPolicy, reliability: ReliabilityPolicy) -> Qo
     return QoSProfile(depth=1, durability=durability, reliability=reliability)
 
 
-def _serves(offered: QoSProfile, wished: QoSProfile) -> bool:
-    """Return whether a publisher with `offered` reaches a subscription with `wished`."""
-    compatibility, _ = qos_check_compatible(offered, wished)
+def _serves(offered: QoSProfile, requested: QoSProfile) -> bool:
+    """Return whether a publisher with ``offered`` reaches a subscription with ``requested``."""
+    compatibility, _ = qos_check_compatible(offered, requested)
     return compatibility != QoSCompatibility.ERROR
 
 

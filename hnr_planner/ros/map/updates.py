@@ -1,4 +1,4 @@
-"""Updates of parts of the map, as costmaps of Nav2 send them, where map_msgs is installed."""
+"""Updates of parts of the map, as costmaps of Nav2 send them, where ``map_msgs`` is installed."""
 
 from collections.abc import Callable
 from typing import Any
@@ -15,17 +15,18 @@ except ImportError:  # a ROS from wheels has none
 else:
     HAVE_MAP_MSGS = True
 
+#: Reliable and volatile: the last update alone, latched, would not hold those before it.
 PROFILE = QoSProfile(depth=10)
-"""Reliable and volatile: the last update alone, latched, says nothing of those before it."""
+
+#: Seconds between looks at whether somebody sends what cannot be read.
 LOOK_EVERY = 1.0
-"""Seconds between looks at whether somebody sends what cannot be read."""
 
 
 class MapUpdates:
     """
-    Listens to updates of the map until `close`.
+    Subscribes to updates of the map until ``close``.
 
-    Without map_msgs it warns, once, when somebody sends some.
+    Without ``map_msgs`` it logs one warning when somebody sends updates.
 
     Parameters
     ----------
@@ -34,9 +35,9 @@ class MapUpdates:
     topic : str
         Full name of the topic.
     receive : callable
-        Called with each `map_msgs/OccupancyGridUpdate`.
+        Called with each ``map_msgs/OccupancyGridUpdate``.
     group : CallbackGroup
-        Of the map's callbacks.
+        The callback group of the map.
 
     """
 
@@ -58,7 +59,7 @@ class MapUpdates:
             )
 
     def close(self) -> None:
-        """Listen no more."""
+        """Subscribe no more."""
         if HAVE_MAP_MSGS:
             self._node.destroy_subscription(self._subscription)
         else:

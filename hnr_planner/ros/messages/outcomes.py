@@ -1,4 +1,4 @@
-"""`diagnostic_msgs/DiagnosticArray`: the outcome of a request, and the health of the node."""
+"""``diagnostic_msgs/DiagnosticArray``: the outcome of a request, and the health of the node."""
 
 from collections.abc import Mapping
 
@@ -9,10 +9,10 @@ from hnr_planner.server.responses import Response
 from std_msgs.msg import Header
 
 
-def outcome_message(report: Response, name: str, stamp: Time) -> DiagnosticArray:
-    """Return the outcome of one request; `name` says which node and service answered it."""
-    level = DiagnosticStatus.OK if report.outcome.is_success else DiagnosticStatus.WARN
-    return _array(level, name, report.outcome.name, report.values, report.frame, stamp)
+def outcome_message(response: Response, name: str, stamp: Time) -> DiagnosticArray:
+    """Return the outcome of one request; ``name`` is the node and the service that it came by."""
+    level = DiagnosticStatus.OK if response.outcome.is_success else DiagnosticStatus.WARN
+    return _array(level, name, response.outcome.name, response.values, response.frame, stamp)
 
 
 def health_message(

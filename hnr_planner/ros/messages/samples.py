@@ -1,15 +1,16 @@
-"""`sensor_msgs/PointCloud2` from the samples of a search, or from draws of the free space."""
+"""``sensor_msgs/PointCloud2`` from the samples of a search, or from draws of the free space."""
 
 import array
 
 from hnr_planner.core.planning.result import SearchResult
 from hnr_planner.server.responses import SampleResponse
-from hnr_planner.server.subsample import shown_samples
+from hnr_planner.server.subsample import subsample_tree
 import numpy as np
 from numpy.typing import NDArray
 from sensor_msgs.msg import PointCloud2, PointField
 from std_msgs.msg import Header
 
+#: Name, format in memory and type in the message; each has four bytes.
 COLUMNS = (
     ('x', '<f4', PointField.FLOAT32),
     ('y', '<f4', PointField.FLOAT32),
@@ -17,25 +18,26 @@ COLUMNS = (
     ('index', '<u4', PointField.UINT32),
     ('parent', '<i4', PointField.INT32),
 )
-"""Name, format in memory and type in the message; each has four bytes."""
+
+#: A point in memory.
 LAYOUT = np.dtype([(name, form) for name, form, _ in COLUMNS])
 
 
 def samples_message(result: SearchResult | None, limit: int, header: Header) -> PointCloud2:
     """
-    Return at most `limit` samples; `parent` is the `index` of the sample it was grown from.
+    Return at most ``limit`` samples; ``parent`` is the ``index`` of the sample it was grown from.
 
     A root has parent -1. Without a result the cloud is empty.
     """
     if result is None:
         return _cloud(np.empty((0, 2)), np.empty(0), header)
-    shown = shown_samples(result.parents, limit)
-    return _cloud(result.samples[shown.rows], shown.parents, header)
+    subsample = subsample_tree(result.parents, limit)
+    return _cloud(result.samples[subsample.rows], subsample.parents, header)
 
 
-def draws_message(report: SampleResponse, header: Header) -> PointCloud2:
-    """Return all draws; `parent` is the `index` of the one that a draw is a step away from."""
-    return _cloud(report.points, report.parents, header)
+def draws_message(response: SampleResponse, header: Header) -> PointCloud2:
+    """Return all draws; ``parent`` is the ``index`` of the draw that is one step away, or -1."""
+    return _cloud(response.points, response.parents, header)
 
 
 def _cloud(samples: NDArray, parents: NDArray, header: Header) -> PointCloud2:

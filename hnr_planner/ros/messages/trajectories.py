@@ -1,98 +1,93 @@
-"""`trajectory_msgs/MultiDOFJointTrajectory`: what a robot with inertia does over time."""
+"""``trajectory_msgs/MultiDOFJointTrajectory``: what a robot with inertia does over time."""
 
-import itertools
+from typing import Any, NamedTuple
 
 from builtin_interfaces.msg import Duration
 from geometry_msgs.msg import Quaternion, Transform, Twist, Vector3
-from hnr_planner.core.spaces.space import Space
 from hnr_planner.core.systems import Trajectory
-from hnr_planner.server.responses import PlanResponse
+from hnr_planner.ros.messages.cdr import with_elements
+from hnr_planner.server.trajectories import yaws_along
 import numpy as np
 from numpy.typing import NDArray
+from rclpy.serialization import serialize_message
 from std_msgs.msg import Header
 from trajectory_msgs.msg import MultiDOFJointTrajectory, MultiDOFJointTrajectoryPoint
 
-AT_REST = 1e-6
-"""Speed [m/s] below which a robot has no direction, and keeps the one before."""
-SAG = 0.1
-"""How far the path as a polyline may be from the trajectory, in cells of the map."""
-HALVINGS = 16
-"""Of a step, at most, until what is straight between its points is free as well."""
+Floats = NDArray[np.float64]
 
 
-def trajectory_message(report: PlanResponse, header: Header) -> MultiDOFJointTrajectory:
+class _Columns(NamedTuple):
+    """Points of a trajectory as the message has them."""
+
+    transforms: Floats
+    velocities: Floats
+    accelerations: Floats
+    times: NDArray[np.int32]
+
+
+def serialised_trajectory(trajectory: Trajectory | None, header: Header) -> bytes:
     """
-    Return the trajectory of a report; it has no points where there is none.
+    Return a trajectory as a message in its serialised form; without one it has no points.
 
-    A point for each time at which the acceleration changes, with the acceleration from there on:
-    in between positions are quadratic, so that a cubic through positions and velocities is exact.
+    It has a point for each time at which the acceleration changes, with the acceleration from
+    there on: in between positions are quadratic, so that a cubic through positions and velocities
+    is exact.
     """
-    message = MultiDOFJointTrajectory(header=header, joint_names=['base'])
-    trajectory = getattr(report.result, 'trajectory', None)
-    if not report.solved or trajectory is None:
-        return message
-    pulls = np.vstack([trajectory.controls, np.zeros(2)])
-    yaw = 0.0
-    for time, state, pull in zip(trajectory.times, trajectory.states, pulls, strict=True):
-        velocity = state[2:]
-        # At rest it points where it is about to go.
-        way = velocity if np.hypot(*velocity) > AT_REST else pull
-        yaw = float(np.arctan2(way[1], way[0])) if np.hypot(*way) > AT_REST else yaw
-        message.points.append(_point(time, state[:2], yaw, velocity, pull))
-    return message
+    columns = _columns(trajectory)
+    short = [serialize_message(_message(columns, n, header)) for n in range(3)]
+    # A point ends with the time, before it three sequences of one element, each after its length.
+    fields: list[tuple[int, NDArray[Any]]] = [
+        (176, columns.transforms),
+        (112, columns.velocities),
+        (56, columns.accelerations),
+        (8, columns.times),
+    ]
+    return with_elements(short, fields)
+
+
+def _columns(trajectory: Trajectory | None) -> _Columns:
+    """Return the points of a trajectory; times are seconds and nanoseconds (n, 2)."""
+    n_points = 0 if trajectory is None else len(trajectory.times)
+    transforms, velocities, accelerations = (np.zeros((n_points, n)) for n in (7, 6, 6))
+    times = np.zeros((n_points, 2), dtype=np.int32)
+    if trajectory is not None:
+        yaws = yaws_along(trajectory)
+        transforms[:, :2] = trajectory.states[:, :2]
+        transforms[:, 5], transforms[:, 6] = np.sin(yaws / 2.0), np.cos(yaws / 2.0)
+        velocities[:, :2] = trajectory.states[:, 2:]
+        accelerations[:-1, :2] = trajectory.controls
+        nanoseconds = np.rint(trajectory.times * 1e9).astype(np.int64)
+        times[:, 0], times[:, 1] = np.divmod(nanoseconds, 10**9)
+    return _Columns(transforms, velocities, accelerations, times)
+
+
+def _message(columns: _Columns, n_points: int, header: Header) -> MultiDOFJointTrajectory:
+    """Return the message of the first points."""
+    rows = zip(*(column[:n_points].tolist() for column in columns), strict=True)
+    return MultiDOFJointTrajectory(
+        header=header, joint_names=['base'], points=[_point(*row) for row in rows]
+    )
 
 
 def _point(
-    time: float,
-    position: NDArray[np.float64],
-    yaw: float,
-    velocity: NDArray[np.float64],
-    acceleration: NDArray[np.float64],
+    transform: list[float], velocity: list[float], acceleration: list[float], time: list[int]
 ) -> MultiDOFJointTrajectoryPoint:
-    place = Transform(
-        translation=_vector(position),
-        rotation=Quaternion(z=float(np.sin(yaw / 2.0)), w=float(np.cos(yaw / 2.0))),
+    x, y, z, *rotation = transform
+    pose = Transform(
+        translation=Vector3(x=x, y=y, z=z),
+        rotation=Quaternion(**dict(zip('xyzw', rotation, strict=True))),
     )
-    nanoseconds = round(time * 1e9)
     return MultiDOFJointTrajectoryPoint(
-        transforms=[place],
-        velocities=[Twist(linear=_vector(velocity))],
-        accelerations=[Twist(linear=_vector(acceleration))],
-        time_from_start=Duration(sec=nanoseconds // 10**9, nanosec=nanoseconds % 10**9),
+        transforms=[pose],
+        velocities=[_twist(velocity)],
+        accelerations=[_twist(acceleration)],
+        time_from_start=Duration(sec=time[0], nanosec=time[1]),
     )
 
 
-def _vector(xy: NDArray[np.float64]) -> Vector3:
-    return Vector3(x=float(xy[0]), y=float(xy[1]))
-
-
-def as_path(trajectory: Trajectory, space: Space) -> NDArray[np.float64]:
-    """Return a free polyline (m, 2) [m] near a trajectory, from its first point to its last."""
-    pulls = np.hypot(*trajectory.controls.T)
-    points = [trajectory.positions[0]]
-    for begin, end, pull in zip(trajectory.times[:-1], trajectory.times[1:], pulls, strict=True):
-        # A chord of a parabola is at most a t^2 / 8 from it.
-        longest = np.sqrt(8.0 * SAG * space.scale / pull) if pull > 0.0 else np.inf
-        n_parts = int(np.ceil((end - begin) / longest)) or 1
-        times = np.linspace(begin, end, n_parts + 1)
-        for first, last in itertools.pairwise(times):
-            points += _chords(trajectory, space, first, last, HALVINGS)
-    path = np.array(points)
-    path[-1] = trajectory.positions[-1]
-    moved = np.hypot(*np.diff(path, axis=0).T) > 0.0
-    kept = path[np.append(True, moved)]
-    return kept if len(kept) > 1 else path[[0, -1]]
-
-
-def _chords(
-    trajectory: Trajectory, space: Space, first: float, last: float, halvings: int
-) -> list[NDArray[np.float64]]:
-    """Return the points after ``first`` up to ``last``, so many that all chords are free."""
-    begin, end = trajectory.at([first, last])[:, :2]
-    if halvings == 0 or space.is_motion_valid(begin, end):
-        return [end]
-    middle = (first + last) / 2.0
-    return [
-        *_chords(trajectory, space, first, middle, halvings - 1),
-        *_chords(trajectory, space, middle, last, halvings - 1),
-    ]
+def _twist(numbers: list[float]) -> Twist:
+    linear, angular = numbers[:3], numbers[3:]
+    return Twist(
+        linear=Vector3(**dict(zip('xyz', linear, strict=True))),
+        angular=Vector3(**dict(zip('xyz', angular, strict=True))),
+    )

@@ -1,4 +1,4 @@
-"""The bond by which Nav2's lifecycle manager sees that a node lives, where bondpy is installed."""
+"""The bond by which Nav2's lifecycle manager sees that a node lives; it needs ``bondpy``."""
 
 from rclpy.duration import Duration
 from rclpy.node import Node
@@ -10,15 +10,18 @@ except ImportError:  # a ROS from wheels has none
 else:
     HAVE_BOND = True
 
+#: The relative name of the topic.
 TOPIC = 'bond'
+
+#: Seconds, as the manager has them by default.
 HEARTBEAT_PERIOD, HEARTBEAT_TIMEOUT = 0.1, 4.0
-"""Seconds, as the manager has them by default."""
+
+#: How long the end of the bond is published again and again.
 LONGEST_FAREWELL = Duration(seconds=0.2)
-"""How long the other side is told again and again that the bond is broken."""
 
 
 class NodeBond:
-    """A bond under the name of the node, kept from when it is made until `close`."""
+    """A bond under the name of the node, kept from when it is made until ``close``."""
 
     def __init__(self, node: Node) -> None:
         if not HAVE_BOND:
@@ -34,7 +37,7 @@ class NodeBond:
         self._bond.start()
 
     def close(self) -> None:
-        """Break the bond, and tell the other side."""
+        """Break the bond, and inform the other side."""
         if HAVE_BOND:
             self._bond.break_bond()
             self._bond.wait_until_broken(LONGEST_FAREWELL)

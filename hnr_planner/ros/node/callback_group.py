@@ -9,11 +9,11 @@ from rclpy.callback_groups import CallbackGroup
 
 class BoundedCallbackGroup(CallbackGroup):
     """
-    Let at most `limit` callbacks of this group run at once; more wait for their turn.
+    Let at most ``limit`` callbacks of this group run at once; more wait for their turn.
 
     Searches are in one such group, smaller than the number of threads: so there is always a
-    thread for cancelling them. `afterwards` is called when a callback of a service has ended and
-    its answer has been sent, in the same thread.
+    thread for cancelling them. ``afterwards`` is called when a callback of a service has ended and
+    its response has been sent, in the same thread.
     """
 
     def __init__(self, limit: int, afterwards: Callable[[], None]) -> None:

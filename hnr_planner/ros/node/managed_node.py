@@ -1,9 +1,10 @@
 """
-A lifecycle node as one wants to have it: what `rclpy.lifecycle.LifecycleNode` leaves open.
+A lifecycle node whose transitions are methods, with what ``LifecycleNode`` of rclpy leaves open.
 
-A node of this class overrides `configure`, `activate`, `deactivate` and `cleanup`; the last two
-also run when they have nothing to undo. A transition that fails is on the log with its reason and
-leads back to unconfigured; one that the state does not allow is refused to whoever asked for it.
+A node of this class overrides ``configure``, ``activate``, ``deactivate`` and ``cleanup``; the
+last two also run when they have nothing to undo. A transition that fails is logged with its
+reason and leads back to unconfigured; one that the state does not allow is refused in the service
+response.
 """
 
 from collections.abc import Callable
@@ -14,12 +15,12 @@ from rclpy.lifecycle import LifecycleNode, LifecycleState, TransitionCallbackRet
 
 
 class ManagedNode(LifecycleNode):
-    """A node with the life cycle of ROS 2; `state` is the name of its state."""
+    """A node with the life cycle of ROS 2; ``state`` is the name of its state."""
 
     def __init__(self, name: str) -> None:
         super().__init__(name)
         self.state = 'unconfigured'
-        self._answer_refused_transitions()
+        self._refuse_in_the_response()
 
     def configure(self) -> None:
         """Acquire what the node needs: unconfigured to inactive."""
@@ -31,7 +32,7 @@ class ManagedNode(LifecycleNode):
         """Stop serving: active to inactive."""
 
     def cleanup(self) -> None:
-        """Let go of what `configure` acquired: inactive to unconfigured."""
+        """Release what ``configure`` acquired: inactive to unconfigured."""
 
     def destroy_node(self) -> None:
         """Take the node down from whatever state it is in."""
@@ -40,19 +41,19 @@ class ManagedNode(LifecycleNode):
         super().destroy_node()
 
     def on_configure(self, _state: LifecycleState) -> TransitionCallbackReturn:
-        """Run `configure`."""
+        """Run ``configure``."""
         return self._pass_to('inactive', self.configure)
 
     def on_activate(self, _state: LifecycleState) -> TransitionCallbackReturn:
-        """Run `activate`."""
+        """Run ``activate``."""
         return self._pass_to('active', self.activate)
 
     def on_deactivate(self, _state: LifecycleState) -> TransitionCallbackReturn:
-        """Run `deactivate`."""
+        """Run ``deactivate``."""
         return self._pass_to('inactive', self.deactivate)
 
     def on_cleanup(self, _state: LifecycleState) -> TransitionCallbackReturn:
-        """Run `cleanup`."""
+        """Run ``cleanup``."""
         return self._pass_to('unconfigured', self.cleanup)
 
     def on_shutdown(self, _state: LifecycleState) -> TransitionCallbackReturn:
@@ -64,7 +65,7 @@ class ManagedNode(LifecycleNode):
         return self._pass_to('unconfigured', self.deactivate, self.cleanup)
 
     def _pass_to(self, state: str, *steps: Callable[[], None]) -> TransitionCallbackReturn:
-        """Take the steps of a transition, and say whether they led to `state`."""
+        """Take the steps of a transition, and return whether they led to ``state``."""
         try:
             for step in steps:
                 step()
@@ -75,12 +76,12 @@ class ManagedNode(LifecycleNode):
         self.state = state
         return TransitionCallbackReturn.SUCCESS
 
-    def _answer_refused_transitions(self) -> None:
-        """Answer a transition that is not possible: rclpy raises, and its caller would wait."""
+    def _refuse_in_the_response(self) -> None:
+        """Respond to an impossible transition too: rclpy raises, and its caller would wait."""
         service = next(item for item in self.services if item.srv_type is ChangeState)
         change_state = service.callback
 
-        def answer(
+        def respond(
             request: ChangeState.Request, response: ChangeState.Response
         ) -> ChangeState.Response:
             try:
@@ -92,4 +93,4 @@ class ManagedNode(LifecycleNode):
                 response.success = False
                 return response
 
-        service.callback = answer
+        service.callback = respond

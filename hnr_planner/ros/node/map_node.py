@@ -1,31 +1,34 @@
-"""The executable `map_node`: publishes a map file, for those who have no map_server."""
+"""The executable ``map_node``: publishes a map file, for those who have no ``map_server``."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 import sys
 from typing import NoReturn
 
 from hnr_planner.maps import load_map, MapFileError
 from hnr_planner.ros.interfaces.publisher import latched
-from hnr_planner.ros.messages.maps import message_from_grid
+from hnr_planner.ros.messages.maps import message_from_map
+from hnr_planner.ros.node.parameters import warn_of_unknown_parameters
 from hnr_planner.ros.node.process import run
-from hnr_planner.server.map_store import Grid
 from nav_msgs.msg import OccupancyGrid
 from nav_msgs.srv import GetMap
 from rcl_interfaces.msg import ParameterDescriptor, SetParametersResult
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 
+#: Name of the node.
 NAME = 'map_source'
+
+#: Name, default and description of each parameter.
 PARAMETERS = (
     ('yaml_filename', '', 'Map file: YAML of map_server, or .map of the Moving AI benchmarks.'),
     ('frame_id', 'map', 'Frame of the map.'),
 )
-"""Name, default and description."""
 
 
 class MapSource(Node):
     """
-    Publishes the map file of the parameter `yaml_filename`, latched, and hands it out.
+    Publishes the map file of the parameter ``yaml_filename``, latched, and serves it.
 
     Raises
     ------
@@ -39,25 +42,25 @@ class MapSource(Node):
         super().__init__(NAME)
         for name, default, description in PARAMETERS:
             self.declare_parameter(name, default, ParameterDescriptor(description=description))
+        warn_of_unknown_parameters(self)
         self._publisher = self.create_publisher(OccupancyGrid, 'map', latched(1))
         self._message = self._load({})
         self._next = self._message
         self._publish()
         self.add_on_set_parameters_callback(self._check)
         self.add_post_set_parameters_callback(self._accept)
-        self.create_service(GetMap, '~/map', self._answer)
+        self.create_service(GetMap, '~/map', self._respond)
 
     def _load(self, changes: dict[str, str]) -> OccupancyGrid:
-        """Return the map for the parameters with `changes`, or raise MapFileError."""
+        """Return the map for the parameters with ``changes``, or raise MapFileError."""
         now = {name: self.get_parameter(name).value for name, _, _ in PARAMETERS}
         wanted = now | changes
         filename = wanted['yaml_filename']
         if not filename:
             raise MapFileError('the parameter yaml_filename is empty: no map file is given')
-        loaded = load_map(filename)
-        grid = Grid(loaded.data, loaded.resolution, loaded.origin, wanted['frame_id'])
-        self.get_logger().info(f'loaded {filename}: {grid}')
-        return message_from_grid(grid, self.get_clock().now().to_msg())
+        occupancy = replace(load_map(filename), frame=wanted['frame_id'])
+        self.get_logger().info(f'loaded {filename}: {occupancy}')
+        return message_from_map(occupancy, self.get_clock().now().to_msg())
 
     def _publish(self) -> None:
         self._publisher.publish(self._message)
@@ -79,8 +82,8 @@ class MapSource(Node):
             self._message = self._next
             self._publish()
 
-    def _answer(self, _request: GetMap.Request, response: GetMap.Response) -> GetMap.Response:
-        """Hand out the map."""
+    def _respond(self, _request: GetMap.Request, response: GetMap.Response) -> GetMap.Response:
+        """Serve the map."""
         response.map = self._message
         return response
 

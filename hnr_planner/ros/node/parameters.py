@@ -1,10 +1,12 @@
-"""ROS parameters: declared from the table of `Settings`, and kept as one frozen copy of it."""
+"""ROS parameters: declared from the table of ``Settings``, and kept as one frozen copy of it."""
 
 from collections.abc import Callable
 import dataclasses
+import difflib
 from typing import Any
 
-from hnr_planner.server.settings import DEFAULTS, Rule, RULES, Settings, SettingsError
+from hnr_planner.server.rules import Rule, SettingsError
+from hnr_planner.server.settings import DEFAULTS, RULES, Settings
 from rcl_interfaces.msg import (
     FloatingPointRange,
     IntegerRange,
@@ -18,7 +20,7 @@ from rclpy.parameter import Parameter
 
 class Parameters:
     """
-    The node's parameters; `settings` is what is in force now.
+    The node's parameters; ``settings`` is what is in force now.
 
     Parameters
     ----------
@@ -26,7 +28,7 @@ class Parameters:
         The parameters are declared on it.
     on_change : callable
         Called with the new settings after some were changed, before the caller that changed
-        them gets its answer.
+        them gets its response.
 
     Raises
     ------
@@ -55,28 +57,48 @@ class Parameters:
             self._on_change(settings)
 
     def _changed(self, parameters: list[Parameter]) -> Settings:
-        """Return the settings with `parameters` applied, or raise SettingsError."""
+        """Return the settings with ``parameters`` applied, or raise SettingsError."""
         values = {item.name: item.value for item in parameters if item.name in RULES}
         return dataclasses.replace(self.settings, **values)
 
 
+def warn_of_unknown_parameters(node: Node) -> None:
+    """
+    Log a warning for each parameter that the node was started with and has not declared.
+
+    rclpy ignores such a parameter, of a file or of the command line, without a word.
+    """
+    declared = list(node.get_parameters_by_prefix(''))
+    # rclpy has no public name for what it was started with.
+    for name in node._parameter_overrides:
+        if node.has_parameter(name) or name.startswith('qos_overrides.'):
+            continue
+        close = difflib.get_close_matches(name, declared, 1)
+        hint = f': did you mean {close[0]}?' if close else ''
+        node.get_logger().warning(f"there is no parameter '{name}', it is ignored{hint}")
+
+
 def _declare(node: Node, name: str) -> Any:
     """Declare one parameter and return its value."""
+    default = getattr(DEFAULTS, name)
+    if isinstance(default, tuple):
+        default = list(default)
     try:
-        parameter = node.declare_parameter(
-            name, getattr(DEFAULTS, name), _descriptor(RULES[name], getattr(DEFAULTS, name))
-        )
+        parameter = node.declare_parameter(name, default, _descriptor(RULES[name], default))
     except ParameterException as error:
         raise SettingsError(f"parameter '{name}': {error}") from error
-    return parameter.value
+    return parameter.value if parameter.value is not None else default
 
 
-def _descriptor(rule: Rule, default: bool | int | float | str) -> ParameterDescriptor:
-    """Return what `ros2 param describe` shows, with the range that rclpy itself checks."""
+def _descriptor(rule: Rule, default: bool | int | float | str | list[str]) -> ParameterDescriptor:
+    """Return what ``ros2 param describe`` shows, with the range that rclpy itself checks."""
     unit = f' [{rule.unit}]' if rule.unit else ''
+    constraints = f'one of: {", ".join(rule.choices)}' if rule.choices else ''
+    if rule.entries:
+        constraints = f'each: {rule.entries}'
     descriptor = ParameterDescriptor(
         description=rule.description + unit,
-        additional_constraints=f'one of: {", ".join(rule.choices)}' if rule.choices else '',
+        additional_constraints=constraints,
         read_only=rule.read_only,
     )
     if rule.lower is not None and rule.upper is not None:

@@ -1,4 +1,4 @@
-"""The planning node: its topics, services and parameters, wired to what answers requests."""
+"""The planning node: its topics, services and parameters, wired to the planning server."""
 
 from functools import partial
 
@@ -9,10 +9,11 @@ from hnr_planner.ros.interfaces.request_server import RequestServer
 from hnr_planner.ros.interfaces.rviz_tools import RvizTools
 from hnr_planner.ros.map.map_input import MapInput
 from hnr_planner.ros.messages.paths import request_from_message
+from hnr_planner.ros.messages.serialised_response import PlanResponses
 from hnr_planner.ros.node.bond import NodeBond
 from hnr_planner.ros.node.callback_group import BoundedCallbackGroup
 from hnr_planner.ros.node.managed_node import ManagedNode
-from hnr_planner.ros.node.parameters import Parameters
+from hnr_planner.ros.node.parameters import Parameters, warn_of_unknown_parameters
 from hnr_planner.ros.node.transforms import Transforms
 from hnr_planner.server.map_store import MapSnapshot
 from hnr_planner.server.outcomes import Outcome, Refusal
@@ -24,40 +25,49 @@ from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.qos import QoSProfile
 from std_srvs.srv import Trigger
 
+#: Requests that run at once; more wait for their turn.
 MOST_SEARCHES = 32
-"""Requests answered at once; more wait for their turn."""
+
+#: Threads for callbacks: searches never take the last ones, those of ~/cancel and diagnostics.
 THREADS = MOST_SEARCHES + 4
-"""Threads for callbacks: searches never take the last ones, those of ~/cancel and diagnostics."""
+
+#: How many requests of a service may wait.
 WAITING_REQUESTS = QoSProfile(depth=1000)
+
+#: Services that plan, and the algorithm of each; None is the one of the parameter.
 SERVICES = {
     'plan': None,
     'plan_hit_and_run': 'hit_and_run',
     'plan_rrt': 'rrt',
     **{f'plan_{name}': name for name in KINODYNAMIC_PLANNERS},
 }
-"""Services that plan, and the algorithm of each; None is the one of the parameter."""
 
 
 class PlannerNode(ManagedNode):
     """
-    Answers requests for paths and for draws on the newest map, and shows every sampled point.
+    Plans and draws on the newest map on request, and publishes every sampled point.
 
-    Its services, topics and reports of health are there in every state, so that a caller never
-    waits for nothing: until the node is active, requests end as NOT_ACTIVE. Maps are received
-    from when it is configured.
+    Its services and topics are there in every state, so that a caller never waits for nothing:
+    until the node is active, requests end as NOT_ACTIVE. Maps are received from when it is
+    configured.
     """
 
     def __init__(self) -> None:
         super().__init__('hnr_planner')
-        self._declared = Parameters(self, self._use_settings)
+        self._parameters_in_force = Parameters(self, self._use_settings)
+        warn_of_unknown_parameters(self)
         self._map_input: MapInput | None = None
-        self._frames: Transforms | None = None
+        self._transforms: Transforms | None = None
         self._bond: NodeBond | None = None
         self._server = RequestServer(
             self, lambda: self.settings, self._newest_map, self._to_frame_of_map
         )
+        self._responses = PlanResponses()
+        if self._responses.why_slow:
+            why = self._responses.why_slow
+            self.get_logger().warning(f'responses are built pose by pose, which is slow: {why}')
         self._health = Health(self, self._find_map_input, self._server)
-        searches = BoundedCallbackGroup(MOST_SEARCHES, self._server.answer_sent)
+        searches = BoundedCallbackGroup(MOST_SEARCHES, self._server.response_sent)
         for name, algorithm in SERVICES.items():
             self.create_service(
                 GetPlan,
@@ -84,52 +94,52 @@ class PlannerNode(ManagedNode):
                 self._newest_map,
                 self._to_frame_of_map,
             )
-        self._clicks = RvizTools(self, self._server, lambda: self.settings, searches)
-        self._clicks.listen(self.settings.rviz_clicks)
+        self._rviz_tools = RvizTools(self, self._server, lambda: self.settings, searches)
+        self._rviz_tools.listen(self.settings.rviz_clicks)
 
     @property
     def settings(self) -> Settings:
         """Return the parameters in force."""
-        return self._declared.settings
+        return self._parameters_in_force.settings
 
     def configure(self) -> None:
-        """Begin to listen to maps and transforms."""
-        self._frames = Transforms(self)
-        self._map_input = MapInput(self, self.settings, self._server.watch.look)
+        """Subscribe to maps and transforms."""
+        self._transforms = Transforms(self)
+        self._map_input = MapInput(self, lambda: self.settings, self._server.path_monitor.check)
         self.get_logger().info(f'maps come from {self._map_input.topic}')
 
     def activate(self) -> None:
-        """Begin to answer requests with paths."""
-        self._server.searches.enable()
+        """Admit requests."""
+        self._server.start()
         if not self.settings.autostart:
             self._bond = NodeBond(self)
 
     def deactivate(self) -> None:
-        """End all searches and answer requests as NOT_ACTIVE."""
+        """End all searches and refuse requests as NOT_ACTIVE."""
         self._server.searches.disable()
         if self._bond is not None:
             self._bond.close()
             self._bond = None
 
     def cleanup(self) -> None:
-        """Listen to maps and transforms no more, and forget what came."""
-        for listener in (self._map_input, self._frames):
-            if listener is not None:
-                listener.close()
-        self._map_input, self._frames = None, None
-        self._server.watch.forget()
+        """Subscribe to maps and transforms no more, and forget what came."""
+        for source in (self._map_input, self._transforms):
+            if source is not None:
+                source.close()
+        self._map_input, self._transforms = None, None
+        self._server.path_monitor.forget()
 
     def end_searches(self) -> None:
-        """Tell running searches, and those that may still come, to end."""
+        """End running searches, and those that may still come."""
         self._server.end()
 
     def destroy_node(self) -> None:
-        """Publish the last results, then take the node down."""
+        """Publish what still waits, then take the node down."""
         self._server.close()
         super().destroy_node()
 
     def _find_map_input(self) -> MapInput:
-        """Return where maps come from, or raise Refusal."""
+        """Return the input of maps, or raise Refusal."""
         map_input = self._map_input
         if map_input is None:
             raise Refusal(Outcome.NOT_ACTIVE, 'the node is not configured')
@@ -140,15 +150,16 @@ class PlannerNode(ManagedNode):
         return self._find_map_input().newest()
 
     def _to_frame_of_map(self, pose: Pose, frame: str) -> Pose:
-        """Return `pose` in the frame of the map, or raise Refusal (BAD_FRAME)."""
-        frames, settings = self._frames, self.settings
-        if frames is None:
+        """Return ``pose`` in the frame of the map, or raise Refusal (BAD_FRAME)."""
+        transforms, settings = self._transforms, self.settings
+        if transforms is None:
             return only_same_frame(pose, frame)
-        return frames.bring(pose, frame, min(settings.transform_tolerance, settings.time_limit))
+        patience = min(settings.transform_tolerance, settings.time_limit)
+        return transforms.transform(pose, frame, patience)
 
     def _use_settings(self, settings: Settings) -> None:
-        """Put changed parameters to use."""
-        self._clicks.listen(settings.rviz_clicks)
+        """Put changed parameters into use."""
+        self._rviz_tools.listen(settings.rviz_clicks)
         if self._map_input is not None:
             self._map_input.use(settings)
 
@@ -157,26 +168,26 @@ class PlannerNode(ManagedNode):
         service: str,
         algorithm: str | None,
         message: GetPlan.Request,
-        response: GetPlan.Response,
+        _response: GetPlan.Response,
     ) -> GetPlan.Response:
-        """Answer one request for a path."""
+        """Respond to one request for a path."""
         request = request_from_message(message, algorithm or self.settings.algorithm)
-        response.plan = self._server.plan(service, request).path
-        return response
+        planned = self._server.plan(service, request)
+        return self._responses.make(planned.response.poses, planned.header)
 
     def _sample(self, _request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
-        """Draw the free space; the answer says how that ended, and how to find the draws."""
-        report, stamp = self._server.sample('sample')
-        response.success = report.outcome.is_success
+        """Draw the free space; the response has the outcome and the stamp of the draws."""
+        sampled, stamp = self._server.sample('sample')
+        response.success = sampled.outcome.is_success
         response.message = (
-            f'{report.outcome.name}: {report.why} (stamp {stamp.sec}.{stamp.nanosec:09d})'
+            f'{sampled.outcome.name}: {sampled.why} (stamp {stamp.sec}.{stamp.nanosec:09d})'
         )
         return response
 
     def _cancel(self, _request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
         """End all running searches."""
-        told = self._server.searches.cancel()
+        count = self._server.searches.cancel()
         response.success = True
-        response.message = f'{told} running search{"" if told == 1 else "es"} told to end'
+        response.message = f'{count} running search{"" if count == 1 else "es"} cancelled'
         self.get_logger().info(f'cancel: {response.message}')
         return response

@@ -1,9 +1,9 @@
 """
-The life of a node's process, the same for every node here: prepare, make, spin, end cleanly.
+The process of a node, the same for every node here: prepare, make, spin, end cleanly.
 
 Executors do not notice a signal before their next wake-up, and rclpy's own handlers shut the
 context down under running callbacks. Here a signal only wakes the main thread: callers that wait
-get their answers, the queue of results is published, and then everything is taken down in order.
+get their responses, what waits to be published is published, and then everything is taken down.
 SIGINT and SIGTERM end the process with exit code 0, however often and whenever they come.
 """
 
@@ -18,7 +18,8 @@ import traceback
 from types import FrameType
 from typing import TypeVar
 
-from hnr_planner.core import HnrError
+from hnr_planner.core.errors import HnrError
+from hnr_planner.ros.node.memory import give_back_large_blocks
 import rclpy
 from rclpy.exceptions import ParameterException
 from rclpy.executors import MultiThreadedExecutor
@@ -54,9 +55,10 @@ def run(
     prepare : callable, optional
         Long work before ROS is started; a signal ends it at once.
     before_shutdown : callable, optional
-        Tells the node's running callbacks to end.
+        Ends the node's running callbacks.
 
     """
+    give_back_large_blocks()
     stop = _StopSignal()
     logger = get_logger(name)
     if prepare is not None:
@@ -143,7 +145,7 @@ class _StopSignal:
             signal.signal(number, _leave_at_once)
 
     def wait_for_owner(self) -> None:
-        """From now on, only remember a signal until `wait`."""
+        """From now on, only remember a signal until ``wait``."""
         # Python runs a handler only when the main thread is back from C; the pipe is written to
         # by the C handler itself, in whatever thread the signal comes.
         signal.set_wakeup_fd(self._writer, warn_on_full_buffer=False)
@@ -155,7 +157,7 @@ class _StopSignal:
         os.write(self._writer, b'\0')
 
     def wait(self) -> None:
-        """Return once a signal has come, or came since `wait_for_owner`."""
+        """Return once a signal has come, or came since ``wait_for_owner``."""
         os.read(self._reader, 1)
 
 

@@ -1,8 +1,8 @@
-"""Poses from the frames that they are given in to that of the map, by tf2 where that is there."""
+"""Poses from their own frames to that of the map, by ``tf2`` where that is installed."""
 
 from dataclasses import replace
 
-from hnr_planner.ros.messages.orientations import LEVEL, normalised, product, rotated
+from hnr_planner.server.orientations import LEVEL, normalised, product, rotated
 from hnr_planner.server.outcomes import Outcome, Refusal
 from hnr_planner.server.requests import Pose
 from hnr_planner.server.respond import only_same_frame
@@ -20,9 +20,9 @@ else:
 
 class Transforms:
     """
-    Listens to transforms from when it is made until `close`.
+    Subscribes to transforms from when it is made until ``close``.
 
-    Without tf2 no pose can be in another frame than the map's.
+    Without ``tf2`` no pose can be in another frame than the map's.
     """
 
     def __init__(self, node: Node) -> None:
@@ -31,13 +31,13 @@ class Transforms:
             self._listener = TransformListener(self._buffer, node)
 
     def close(self) -> None:
-        """Listen no more."""
+        """Subscribe no more."""
         if HAVE_TF:
             self._listener.unregister()
 
-    def bring(self, pose: Pose, frame: str, patience: float) -> Pose:
+    def transform(self, pose: Pose, frame: str, patience: float) -> Pose:
         """
-        Return `pose` in `frame`; a transform may take `patience` [s] to come.
+        Return ``pose`` in ``frame``; a transform may take ``patience`` [s] to come.
 
         Raises
         ------

@@ -95,7 +95,7 @@ class Caller:
 
 @contextmanager
 def callers(count: int, service: str = '/hnr_planner/plan') -> Iterator[list[Caller]]:
-    """Run so many clients for the length of a `with` block."""
+    """Run so many clients for the length of a ``with`` block."""
     made = [Caller(service) for _ in range(count)]
     try:
         yield made

@@ -1,4 +1,4 @@
-"""How much is done: a little with every run of the tests, all of it with `make soak`."""
+"""How much is done: a little with every run of the tests, all of it with ``make soak``."""
 
 import os
 from typing import NamedTuple

@@ -18,8 +18,10 @@ NUMBERS = (
     *(math.nan, math.inf, -math.inf, 0.0, -0.0, 5e-324, -5e-324, 1e-300, 1e-9, 1.0, -1.0, 7.0),
     *(1e9, -1e9, 1e16, 2.0**31, 2.0**63, 1e300, 1.7976931348623157e308, -1.7976931348623157e308),
 )
+
+#: The same in the range of single precision.
 SINGLES = (math.nan, math.inf, -math.inf, 0.0, -0.0, 1e-45, 1e-4, 0.05, 0.1, 1.0, -1.0, 1e3, 3e38)
-"""The same in the range of single precision."""
+
 FRAMES = ('', 'map', '/map', 'map ', 'odom', 'карта', 'x' * 10_000, "'; DROP TABLE", '{}', '%s%n')
 MOST_CELLS = 40
 

@@ -1,7 +1,7 @@
 """
 What an answer has to be, by a judge that shares no code with the planner.
 
-Free cells and their parts come from the definition (`test.brute_force`) and from scipy; a path
+Free cells and their parts come from the definition (``test.brute_force``) and from scipy; a path
 that was given is held against every blocked cell.
 """
 

@@ -26,10 +26,12 @@ import pytest
 
 Tell = Callable[[str], None]
 N_WAITING = 4
+
+#: A request in the rooms that has a path wherever the doors are.
 ACROSS = plan_request((1.5, 1.5), (7.0, 7.0))
-"""A request in the rooms that has a path wherever the doors are."""
+
+#: A request that is answered at once where others take long.
 SHORT = plan_request(START, START)
-"""A request that is answered at once where others take long."""
 
 
 @contextmanager

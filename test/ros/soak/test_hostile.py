@@ -9,7 +9,7 @@ from test.ros.soak.effort import EFFORT
 from test.ros.soak.hostile import Generator
 from test.ros.soak.judge import SOLVED, World
 
-from hnr_planner.ros.messages.maps import grid_from_message
+from hnr_planner.ros.messages.maps import map_from_message
 from nav_msgs.msg import OccupancyGrid
 from nav_msgs.msg import Path as PathMessage
 from nav_msgs.srv import GetPlan
@@ -61,7 +61,7 @@ def publish(client: Client, planner: NodeProcess, message: OccupancyGrid) -> boo
 
 def world_of(message: OccupancyGrid) -> World:
     """Return a map that was taken, for the judge."""
-    grid = grid_from_message(message)
+    grid = map_from_message(message)
     return World(grid.data, grid.resolution, grid.origin, grid.frame)
 
 

@@ -21,8 +21,9 @@ Tell = Callable[[str], None]
 N_CLIENTS, N_PLANNING = 8, 4
 LARGEST_GROWTH = 0.05
 MAPS_A_SECOND = 5.0
+
+#: Seconds for which a map may be in use after the next one was sent, on a busy machine.
 LONGEST_USE = 5.0
-"""Seconds for which a map may be in use after the next one was sent, on a busy machine."""
 
 
 @pytest.fixture

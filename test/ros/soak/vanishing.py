@@ -1,7 +1,7 @@
 """
 A client that asks and then dies without a word: ``python -m test.ros.soak.vanishing N_REQUESTS``.
 
-It says `asked` when its requests are out; killing it is up to whoever started it.
+It says ``asked`` when its requests are out; killing it is up to whoever started it.
 """
 
 import sys

@@ -11,10 +11,12 @@ from nav_msgs.srv import GetPlan
 import numpy as np
 
 RESOLUTION = 0.1
+
+#: Cells along a side: 8 m.
 SIDE = 80
-"""Cells along a side: 8 m."""
+
+#: Part of the requests that cannot be answered with a path.
 BAD = 0.1
-"""Part of the requests that cannot be answered with a path."""
 
 
 def rooms(door: int = 0) -> World:
@@ -61,6 +63,7 @@ def requests(rng: np.random.Generator, count: int) -> Iterator[GetPlan.Request]:
         )[rng.integers(5)]
 
 
+#: A map on which no search gets from START to END in the time of a test.
 LONG = maze()
-"""A map on which no search gets from START to END in the time of a test."""
+
 START, END = (0.025, 0.025), (20.025, 20.025)

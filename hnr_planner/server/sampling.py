@@ -1,26 +1,21 @@
-"""
-What draws the free space of the map, without ROS: `draw(settings, newest_map, cancel)`.
+"""Draws of the free space of the map in use."""
 
-As with paths, whatever happens the caller gets a report: the name of the outcome, and why.
-"""
-
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 import threading
 import time
 
 from hnr_planner.core import Cancelled, FreeSpaceDraws, sample_free_space, SpaceError, StuckError
+from hnr_planner.core.kernels.clock import working_time
 from hnr_planner.server.map_store import MapSnapshot
 from hnr_planner.server.outcomes import Outcome, Refusal
 from hnr_planner.server.responses import SampleResponse
 from hnr_planner.server.settings import Settings
+from hnr_planner.server.waiting import NewestMap, wait_for_map
 
 
-def draw(
-    settings: Settings, newest_map: Callable[[], MapSnapshot], cancel: threading.Event
-) -> SampleResponse:
+def draw(settings: Settings, newest_map: NewestMap, cancel: threading.Event) -> SampleResponse:
     """
-    Return uniform draws of all free space of the newest map, or why there are none.
+    Draw all free space of the newest map uniformly, and return the draws or why there are none.
 
     Parameters
     ----------
@@ -32,27 +27,27 @@ def draw(
         Ends the work when it is set.
 
     """
-    began = time.monotonic()
+    began, deadline = time.monotonic(), working_time() + settings.time_limit
     snapshot = None
     try:
-        snapshot = newest_map()
-        draws = _draw(settings, snapshot, _Ending(cancel, began + settings.time_limit))
-        why = f'{_asked_for(settings)} by {settings.sample_walk}, seed {draws.seed}'
-        report = SampleResponse(Outcome.SAMPLED, why, settings, draws, snapshot=snapshot)
+        snapshot = wait_for_map(newest_map, settings.patience, cancel)
+        draws = _draw(settings, snapshot, _Ending(cancel, deadline))
+        why = f'{_description(settings)} by {settings.sample_walk}, seed {draws.seed}'
+        response = SampleResponse(Outcome.SAMPLED, why, settings, draws, snapshot=snapshot)
     except Refusal as refusal:
-        report = SampleResponse(refusal.outcome, refusal.why, settings, snapshot=snapshot)
-    return replace(report, elapsed=time.monotonic() - began)
+        response = SampleResponse(refusal.outcome, refusal.why, settings, snapshot=snapshot)
+    return replace(response, elapsed=time.monotonic() - began)
 
 
 @dataclass(frozen=True)
 class _Ending:
-    """Set when the request is cancelled, or its time is up."""
+    """An event that is set when the request is cancelled, or its time is up."""
 
     cancel: threading.Event
     deadline: float
 
     def is_set(self) -> bool:
-        return self.cancel.is_set() or time.monotonic() >= self.deadline
+        return self.cancel.is_set() or working_time() >= self.deadline
 
 
 def _draw(settings: Settings, snapshot: MapSnapshot, ending: _Ending) -> FreeSpaceDraws:
@@ -69,11 +64,11 @@ def _draw(settings: Settings, snapshot: MapSnapshot, ending: _Ending) -> FreeSpa
         raise Refusal(
             Outcome.TIMEOUT,
             f'the time limit of {settings.time_limit:g} s passed before there were '
-            f'{_asked_for(settings)}',
+            f'{_description(settings)}',
         ) from error
 
 
-def _asked_for(settings: Settings) -> str:
-    """Return what the settings ask for, in words."""
+def _description(settings: Settings) -> str:
+    """Return in words what the settings ask for."""
     thin = settings.sample_thin
     return f'{settings.sample_count} draws' + (f', {thin} steps apart' if thin > 1 else '')

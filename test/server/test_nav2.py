@@ -3,21 +3,19 @@
 from dataclasses import replace
 from pathlib import Path
 from test.brute_force import path_collisions
-from test.ros.harness import pose
 from test.server.test_requests import GOAL, RESOLUTION, rooms, SETTINGS, store
 import threading
-from types import SimpleNamespace
 from typing import Any
 from xml.etree import ElementTree
 
 from hnr_planner.core import ALGORITHMS
-from hnr_planner.ros.interfaces.nav2_goals import error_of, from_robot_on, request_of
+from hnr_planner.server.nav2 import error_name, goal_request
 from hnr_planner.server.outcomes import Outcome
-from hnr_planner.server.path_validity import blocked_poses
+from hnr_planner.server.path_validity import blocked_poses, judge_path, nearest_pose
 from hnr_planner.server.requests import Pose
 from hnr_planner.server.respond import respond
 from hnr_planner.server.responses import PlanResponse
-from hnr_planner.server.settings import RULES, Settings
+from hnr_planner.server.settings import DEFAULTS, RULES, Settings
 import numpy as np
 import pytest
 import yaml
@@ -28,32 +26,38 @@ INSIDE_WALL, OUTSIDE = (2.0, 0.25), (9.0, 0.5)
 NAN = float('nan')
 
 
-def goal_message(start: tuple[float, float] | None = START, planner_id: str = '') -> Any:
-    """Return what both actions ask for besides the poses; without a start, the robot's."""
-    return SimpleNamespace(
-        start=pose(*(start or (7.0, 7.0))), use_start=start is not None, planner_id=planner_id
-    )
+def pose(point: tuple[float, float]) -> Pose:
+    """Return a pose of the map's frame."""
+    return Pose((*point, 0.0), frame='map')
 
 
-def ask(*points: tuple[float, float], message: Any = None, **settings: Any) -> PlanResponse:
-    """Ask for a path through points and return how that ended."""
+def ask(
+    *points: tuple[float, float],
+    start: tuple[float, float] | None = START,
+    planner_id: str = '',
+    **settings: Any,
+) -> PlanResponse:
+    """Ask for a path through points, from the robot without a start; return how that ended."""
     own = replace(SETTINGS, **settings)
-    request = request_of(message or goal_message(), [pose(*point) for point in points], own)
+    begin = None if start is None else pose(start)
+    request = goal_request(begin, [pose(point) for point in points], planner_id, own)
     return respond(request, own, store(rooms()).newest, threading.Event())
 
 
 def test_path_meets_all_poses_in_their_order() -> None:
     points = [(1.5, 1.6), (3.6, 1.7), GOAL, START]
-    report = ask(*points)
-    assert report.solved and report.result is not None, report.why
-    path = report.path.tolist()
-    assert path_collisions(report.path, rooms() == 100, RESOLUTION) == []
+    response = ask(*points)
+    assert response.solved and response.result is not None, response.why
+    path = response.path.tolist()
+    assert path_collisions(response.path, rooms() == 100, RESOLUTION) == []
     assert path[0] == list(START) and path[-1] == list(points[-1])
     places = [path.index(list(point), 1) for point in points]
     assert places == sorted(places)
-    assert report.result.length == pytest.approx(np.hypot(*np.diff(report.path, axis=0).T).sum())
-    assert report.clearance > 0.0 and report.offset == 0.0
-    assert report.why.count('leg ') == 4
+    assert response.result.length == pytest.approx(
+        np.hypot(*np.diff(response.path, axis=0).T).sum()
+    )
+    assert response.clearance > 0.0 and response.offset == 0.0
+    assert response.why.count('leg ') == 4
 
 
 def test_samples_of_all_legs_are_one_forest() -> None:
@@ -69,27 +73,50 @@ def test_samples_of_all_legs_are_one_forest() -> None:
 
 
 def test_leg_that_fails_is_named_and_there_is_no_path() -> None:
-    report = ask((1.5, 1.6), INSIDE_WALL, GOAL)
-    assert report.outcome is Outcome.INVALID_GOAL
-    assert report.why.startswith('leg 2 of 3: ')
-    assert len(report.path) == 0
+    response = ask((1.5, 1.6), INSIDE_WALL, GOAL)
+    assert response.outcome is Outcome.INVALID_GOAL
+    assert response.why.startswith('leg 2 of 3: ')
+    assert len(response.path) == 0
 
 
 def test_pose_on_the_way_may_be_moved_within_the_tolerance() -> None:
-    report = ask((1.95, 0.25), GOAL, default_tolerance=0.3)
-    assert report.solved and 'moved' in report.why
-    assert path_collisions(report.path, rooms() == 100, RESOLUTION) == []
+    response = ask((1.95, 0.25), GOAL, default_tolerance=0.3)
+    assert response.solved and 'moved' in response.why
+    assert path_collisions(response.path, rooms() == 100, RESOLUTION) == []
 
 
 def test_planner_id_names_the_algorithm_and_the_parameter_does_without_one() -> None:
-    poses = [pose(*GOAL)]
-    for named, expected in (('rrt', 'rrt'), ('', 'hit_and_run')):
-        settings = replace(SETTINGS, algorithm='hit_and_run')
-        assert request_of(goal_message(planner_id=named), poses, settings).algorithm == expected
+    settings = replace(
+        SETTINGS, algorithm='hit_and_run', planner_aliases=('GridBased:rrt_connect', 'rrt:auto')
+    )
+    for named, expected in (
+        ('hit_and_run', 'hit_and_run'),
+        ('', 'hit_and_run'),
+        ('GridBased', 'rrt_connect'),
+        ('rrt', 'auto'),
+        ('kinodynamic_connect', 'kinodynamic_connect'),
+    ):
+        request = goal_request(None, [pose(GOAL)], named, settings)
+        assert request.algorithm == expected
+
+
+def test_names_of_nav2_stand_for_the_best_planner_by_default() -> None:
+    assert DEFAULTS.aliases == {'GridBased': 'auto'}
+    assert ask(GOAL, planner_id='GridBased').solved
+
+
+def test_robot_with_inertia_is_served_to_one_pose_only() -> None:
+    response = ask(GOAL, planner_id='kinodynamic_connect', time_limit=60.0)
+    assert response.solved and error_name(response) == 'NONE'
+    assert response.path[0].tolist() == list(START)
+    refused = ask((1.5, 1.6), GOAL, planner_id='kinodynamic_connect')
+    assert refused.outcome is Outcome.BAD_REQUEST and 'on the way' in refused.why
+    assert refused.result is None, 'nothing was planned'
+    assert error_name(refused) == 'INVALID_PLANNER'
 
 
 def test_without_a_start_the_robot_is_where_it_is() -> None:
-    request = request_of(goal_message(start=None), [pose(*GOAL)], SETTINGS)
+    request = goal_request(None, [pose(GOAL)], '', SETTINGS)
     assert request.start == Pose((0.0, 0.0, 0.0), frame='base_link')
 
 
@@ -97,7 +124,7 @@ def test_without_a_start_the_robot_is_where_it_is() -> None:
     ('name', 'points', 'changes'),
     [
         ('NONE', [GOAL], {}),
-        ('INVALID_PLANNER', [GOAL], {'planner_id': 'GridBased'}),
+        ('INVALID_PLANNER', [GOAL], {'planner_id': 'NavFn'}),
         ('TF_ERROR', [GOAL], {'start': None}),
         ('START_OUTSIDE_MAP', [GOAL], {'start': OUTSIDE}),
         ('GOAL_OUTSIDE_MAP', [OUTSIDE], {}),
@@ -110,10 +137,10 @@ def test_without_a_start_the_robot_is_where_it_is() -> None:
     ],
 )
 def test_error_code(name: str, points: list[tuple[float, float]], changes: dict) -> None:
-    report = ask(*points, message=goal_message(**changes))
-    assert error_of(report) == name, report.why
-    assert report.solved == (name == 'NONE')
-    assert len(report.why) > 10
+    response = ask(*points, **changes)
+    assert error_name(response) == name, response.why
+    assert response.solved == (name == 'NONE')
+    assert len(response.why) > 10
 
 
 @pytest.mark.parametrize(
@@ -129,7 +156,7 @@ def test_error_code(name: str, points: list[tuple[float, float]], changes: dict)
     ],
 )
 def test_error_code_of_other_outcomes(outcome: Outcome, name: str) -> None:
-    assert error_of(replace(ask(GOAL), outcome=outcome)) == name
+    assert error_name(replace(ask(GOAL), outcome=outcome)) == name
 
 
 def test_poses_that_are_blocked_are_those_that_cannot_be_reached() -> None:
@@ -143,10 +170,28 @@ def test_poses_that_are_blocked_are_those_that_cannot_be_reached() -> None:
     assert blocked_poses(np.empty((0, 2)), 'map', newest) == []
 
 
+def test_path_that_is_not_valid_has_a_reason() -> None:
+    newest = store(rooms()).newest()
+    free = np.array([START, (1.5, 1.05), (3.5, 1.05)])
+    assert judge_path(free, '', newest, None) == ([], '')
+    assert judge_path(np.empty((0, 2)), 'map', newest, None).why == 'the path has no poses'
+    other = judge_path(free, 'odom', newest, None)
+    assert other.blocked == [0, 1, 2] and "'odom'" in other.why and "'map'" in other.why
+    through = np.array([START, (1.5, 0.5), (2.5, 0.5)])
+    verdict = judge_path(through, 'map', newest, None)
+    assert verdict.blocked == [2] and 'pose 2 of 3, at (2.5, 0.5)' in verdict.why
+    assert judge_path(through, 'map', newest, Pose((2.6, 0.5, 0.0))).blocked == [2]
+    assert judge_path(through[:2], 'map', newest, None).why == ''
+    # What the robot has passed does not count.
+    behind = np.array([(2.0, 0.5), (2.5, 0.5), (3.5, 0.5)])
+    assert judge_path(behind, 'map', newest, None).blocked == [0]
+    assert judge_path(behind, 'map', newest, Pose((3.4, 0.5, 0.0))) == ([], '')
+
+
 def test_poses_behind_the_robot_have_been_passed() -> None:
     points = np.array([(0.0, 0.0), (1.0, 0.0), (2.0, 0.0), (NAN, 0.0)])
-    assert from_robot_on(points, Pose((1.1, 0.3, 0.0))) == 1
-    assert from_robot_on(points, Pose((9.0, 0.0, 0.0))) == 2
+    assert nearest_pose(points, Pose((1.1, 0.3, 0.0))) == 1
+    assert nearest_pose(points, Pose((9.0, 0.0, 0.0))) == 2
 
 
 def test_parameters_for_nav2_are_parameters() -> None:

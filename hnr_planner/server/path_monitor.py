@@ -1,0 +1,82 @@
+"""The last path, checked on every map that comes."""
+
+from collections.abc import Callable
+from contextlib import suppress
+from dataclasses import replace
+import threading
+
+from hnr_planner.server.map_store import MapSnapshot
+from hnr_planner.server.outcomes import Outcome, Refusal
+from hnr_planner.server.path_validity import first_blocked_pose
+from hnr_planner.server.responses import PlanResponse
+from hnr_planner.server.waiting import NewestMap
+
+
+class PathMonitor:
+    """
+    Checks the last path on every newer map and reports each change of its validity.
+
+    Parameters
+    ----------
+    newest_map : callable
+        Returns the map in use, or raises Refusal.
+    report : callable
+        Called for each path and at each change: with whether the path is free, why that changed
+        (empty for a path just found), and, where a newer map blocks it, the response (MAP_CHANGED)
+        that says where.
+
+    """
+
+    def __init__(
+        self, newest_map: NewestMap, report: Callable[[bool, str, PlanResponse | None], None]
+    ) -> None:
+        self._newest_map = newest_map
+        self._report = report
+        self._one_at_a_time = threading.Lock()
+        self._response: PlanResponse | None = None
+        self._frame, self._number = '', 0
+        self._valid = False
+
+    def follow(self, response: PlanResponse) -> None:
+        """Check the path of ``response`` from now on, none after a failure."""
+        with self._one_at_a_time:
+            # Without its map, which may be large, and old soon.
+            self._response = replace(response, snapshot=None) if response.solved else None
+            if response.snapshot is not None:
+                self._frame, self._number = response.frame, response.snapshot.number
+            self._set(response.solved)
+        if response.solved:
+            self.check()  # a map may have come since the path was found
+
+    def forget(self) -> None:
+        """Check no path any more."""
+        with self._one_at_a_time:
+            if self._response is not None:
+                self._response = None
+                self._set(False)
+
+    def check(self) -> None:
+        """Check the path on the newest map, if there is one."""
+        with self._one_at_a_time:
+            if self._response is not None:
+                with suppress(Refusal):
+                    self._check_on(self._newest_map(), self._response)
+
+    def _check_on(self, newest: MapSnapshot, response: PlanResponse) -> None:
+        if newest.number == self._number and self._valid:
+            return
+        blocked = first_blocked_pose(response.free_path, self._frame, newest)
+        if self._valid == (blocked is None):
+            return
+        if blocked is None:
+            self._set(True, 'a newer map leaves the last path free again')
+            return
+        why = f'a newer map blocks the last path at {blocked}'
+        changed = replace(
+            response, outcome=Outcome.MAP_CHANGED, why=why, snapshot=newest, blocked=blocked
+        )
+        self._set(False, why, changed)
+
+    def _set(self, valid: bool, why: str = '', changed: PlanResponse | None = None) -> None:
+        self._valid = valid
+        self._report(valid, why, changed)

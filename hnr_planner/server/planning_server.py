@@ -1,0 +1,87 @@
+"""Every request, whoever sends it: admit it, do the work, count it."""
+
+from collections.abc import Callable
+import threading
+import traceback
+from typing import TypeVar
+
+from hnr_planner.server.outcomes import Outcome, Refusal
+from hnr_planner.server.requests import PlanRequest
+from hnr_planner.server.respond import respond, ToFrame
+from hnr_planner.server.responses import PlanResponse, Response, SampleResponse
+from hnr_planner.server.sampling import draw
+from hnr_planner.server.searches import RunningSearches
+from hnr_planner.server.settings import Settings
+from hnr_planner.server.statistics import Statistics
+from hnr_planner.server.waiting import NewestMap
+
+Some = TypeVar('Some', bound=Response)
+
+
+class PlanningServer:
+    """
+    Responds to requests for paths and for draws; any number of threads may ask at once.
+
+    Parameters
+    ----------
+    settings : callable
+        Returns the parameters in force.
+    newest_map : callable
+        Returns the map in use, or raises Refusal.
+    to_frame : callable
+        Transforms a pose into the frame of the map, or raises Refusal.
+    report_defect : callable
+        Called with the traceback of an exception that nothing here expects.
+
+    """
+
+    def __init__(
+        self,
+        settings: Callable[[], Settings],
+        newest_map: NewestMap,
+        to_frame: ToFrame,
+        report_defect: Callable[[str], None],
+    ) -> None:
+        self._settings = settings
+        self._newest_map = newest_map
+        self._to_frame = to_frame
+        self._report_defect = report_defect
+        self.searches = RunningSearches()
+        self.statistics = Statistics()
+
+    def plan(self, request: PlanRequest, cancel: threading.Event | None = None) -> PlanResponse:
+        """Respond to ``request``; ``cancel`` ends its search when it is set."""
+        settings, event = self._settings(), cancel or threading.Event()
+        return self._counted(
+            event,
+            lambda: respond(request, settings, self._newest_map, event, self._to_frame),
+            lambda refusal: PlanResponse(refusal.outcome, refusal.why, request),
+        )
+
+    def sample(self) -> SampleResponse:
+        """Draw the free space as the parameters say."""
+        settings, event = self._settings(), threading.Event()
+        return self._counted(
+            event,
+            lambda: draw(settings, self._newest_map, event),
+            lambda refusal: SampleResponse(refusal.outcome, refusal.why, settings),
+        )
+
+    def _counted(
+        self,
+        cancel: threading.Event,
+        work: Callable[[], Some],
+        refused: Callable[[Refusal], Some],
+    ) -> Some:
+        """Return the response of ``work``, or a failure, even for a defect in it."""
+        try:
+            with self.searches.one(cancel):
+                response = work()
+        except Refusal as refusal:
+            response = refused(refusal)
+        except Exception as error:  # without a response the caller would wait for ever
+            self._report_defect(traceback.format_exc())
+            why = f'a defect of the planner, please report it: {error!r}'
+            response = refused(Refusal(Outcome.INTERNAL_ERROR, why))
+        self.statistics.count(response)
+        return response

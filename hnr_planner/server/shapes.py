@@ -1,0 +1,76 @@
+"""Shapes that show a search to a person: what is drawn, and where."""
+
+import enum
+from typing import NamedTuple
+
+from hnr_planner.core.planning.result import SearchResult
+from hnr_planner.server.responses import PlanResponse
+from hnr_planner.server.subsample import subsample_tree
+import numpy as np
+from numpy.typing import NDArray
+
+#: Points in one shape: more takes longer to draw than it helps to see.
+MOST_POINTS = 10_000
+
+
+class Kind(enum.Enum):
+    """How the points of a shape are drawn."""
+
+    POINTS = enum.auto()
+    PAIRS = enum.auto()
+    LINE = enum.auto()
+    BALL = enum.auto()
+
+
+class Shape(NamedTuple):
+    """
+    A named shape.
+
+    Attributes
+    ----------
+    name : str
+    kind : Kind
+        ``PAIRS`` draws a segment for each two points.
+    size : float
+        Width of a line or point, diameter of a ball [m].
+    points : (n, 2)
+        In the map's frame [m].
+
+    """
+
+    name: str
+    kind: Kind
+    size: float
+    points: NDArray[np.float64]
+
+
+def search_shapes(response: PlanResponse) -> list[Shape]:
+    """Return samples, tree, path, start and goal of a solved request; none after a failure."""
+    if not response.solved or response.result is None or response.snapshot is None:
+        return []
+    cell = response.snapshot.occupancy.resolution
+    request = response.request
+    return [
+        *_result_shapes(response.result, cell),
+        Shape('start', Kind.BALL, 4.0 * cell, np.array([request.start.point])),
+        Shape('goal', Kind.BALL, 4.0 * cell, np.array([request.goal.point])),
+    ]
+
+
+def _result_shapes(result: SearchResult, cell: float) -> list[Shape]:
+    """Return the samples, the edges between them and the path."""
+    samples, parents = result.samples, result.parents
+    dots = subsample_tree(parents, MOST_POINTS)
+    # An edge has two points.
+    tree = subsample_tree(parents, MOST_POINTS // 2)
+    children = np.flatnonzero(tree.parents >= 0)
+    nodes = samples[tree.rows]
+    edges = np.stack([nodes[tree.parents[children]], nodes[children]], axis=1).reshape(-1, 2)
+    path = result.path
+    if len(path) > MOST_POINTS:
+        path = path[np.linspace(0, len(path) - 1, MOST_POINTS).astype(int)]
+    return [
+        Shape('samples', Kind.POINTS, cell, samples[dots.rows]),
+        Shape('tree', Kind.PAIRS, cell / 4.0, edges),
+        Shape('path', Kind.LINE, cell, path),
+    ]
