@@ -7,6 +7,7 @@ from hnr_planner.core.sampling.sample import sample
 from hnr_planner.core.sampling.walks import WALKS
 from hnr_planner.core.spaces.grid.grid_space import GridSpace
 from hnr_planner.core.systems import DoubleIntegrator
+from hnr_planner.core.trajectories.plan_trajectory import plan_trajectory
 from hnr_planner.core.trajectories.registry import KINODYNAMIC_PLANNERS
 import numpy as np
 
@@ -45,7 +46,7 @@ def _find_paths(space: GridSpace) -> None:
 def _find_motions(space: GridSpace) -> None:
     for algorithm in KINODYNAMIC_PLANNERS:
         state, system = (*START, 0.0, 0.0), DoubleIntegrator()
-        plan(space, state, GOAL, system=system, algorithm=algorithm, goal_radius=1.0, seed=0)
+        plan_trajectory(space, system, state, GOAL, algorithm=algorithm, goal_radius=1.0, seed=0)
 
 
 def _draw_samples(space: GridSpace) -> None:

@@ -37,8 +37,8 @@ class Problem(NamedTuple):
         Radius of the goal region; 0 when the path has to end exactly at the goal.
     margin : float
         Distance from a chord's end at which one stops.
-    clearance : float
-        What a free point is away from the boundary, roughly and on average.
+    typical_clearance : float
+        Distance from a free point to the boundary, roughly and on average.
     scale : float
         Caller's units [m] in one unit of the kernel frame.
 
@@ -51,7 +51,7 @@ class Problem(NamedTuple):
     goal: Floats
     goal_radius: float
     margin: float
-    clearance: float
+    typical_clearance: float
     scale: float
 
 
@@ -66,7 +66,7 @@ def make_problem(space: Space, start: Floats, goal: Floats, goal_radius: float) 
         goal=space.to_kernel(goal),
         goal_radius=goal_radius / space.scale,
         margin=space.margin,
-        clearance=space.typical_clearance,
+        typical_clearance=space.typical_clearance,
         scale=space.scale,
     )
 
@@ -107,6 +107,24 @@ class Search(Protocol):
 
     def advance(self, n_iterations: int) -> None:
         """Handle at most ``n_iterations`` further transitions, fewer once solved."""
+
+
+class Work(NamedTuple):
+    """Work of several searches: transitions, and further counts by name."""
+
+    iterations: int
+    counts: dict[str, int]
+
+    @classmethod
+    def of(cls, search: Search) -> 'Work':
+        """Return the work of one search."""
+        return cls(search.iterations, search.counts)
+
+    def plus(self, other: 'Work') -> 'Work':
+        """Return the work of both."""
+        names = {**self.counts, **other.counts}
+        counts = {name: self.counts.get(name, 0) + other.counts.get(name, 0) for name in names}
+        return Work(self.iterations + other.iterations, counts)
 
 
 class PathSearch(Search, Protocol):

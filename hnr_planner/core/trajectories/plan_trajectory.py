@@ -7,16 +7,23 @@ clock owned, a cancellation heard and the end told in words.
 
 from dataclasses import dataclass
 import math
-import time
 from typing import Any
 
+from hnr_planner.core.cancellation import Event
 from hnr_planner.core.checks import check_number, Floats
 from hnr_planner.core.errors import RequestError
+from hnr_planner.core.kernels.clock import working_time
 from hnr_planner.core.kernels.streams import stream
 from hnr_planner.core.planning.attempts import SEARCH, search_until_free, SHORTEN
 from hnr_planner.core.planning.limits import Budget
-from hnr_planner.core.planning.request import check_request, outcome_without_search, Request
-from hnr_planner.core.planning.result import FirstSolution, PlannerStatus, PlanResult
+from hnr_planner.core.planning.request import (
+    check_effort,
+    check_request,
+    Effort,
+    outcome_without_search,
+    Request,
+)
+from hnr_planner.core.planning.result import FirstSolution, PlannerStatus
 from hnr_planner.core.spaces.curves.curve import knows_curves
 from hnr_planner.core.spaces.primitives import kind_of
 from hnr_planner.core.spaces.space import Space
@@ -37,6 +44,7 @@ from hnr_planner.core.trajectories.problem import (
     Motion,
 )
 from hnr_planner.core.trajectories.registry import make_kinodynamic_planner
+from hnr_planner.core.trajectories.result import TrajectoryResult
 from hnr_planner.core.trajectories.shorten import shorten_in_time
 from hnr_planner.core.trajectories.steps import can_brake
 import numpy as np
@@ -103,7 +111,7 @@ def check_kinodynamic_request(
     planner = make_kinodynamic_planner(algorithm, settings, system)
     speed = check_number('goal_speed', goal_speed, 0.0)
     geometric = check_request(
-        space, state[: system.dim], goal, goal_radius, 'auto', {}, simplify, seed
+        space, state[: system.dim], goal, goal_radius=goal_radius, simplify=simplify, seed=seed
     )
     for name, value in (('goal_radius', geometric.goal_radius), ('goal_speed', speed)):
         if planner.samples_goal and value == 0.0:
@@ -120,32 +128,64 @@ def check_kinodynamic_request(
     return KinodynamicRequest(geometric, system, state, planner, problem)
 
 
-def plan_motion(
-    request: KinodynamicRequest,
-    seconds: float,
-    transitions: float,
-    improve_seconds: float,
-    improve_rounds: int,
-    cancel: Any,
-) -> PlanResult:
-    """Answer a request for a system; arguments as of ``plan``, checked."""
+def plan_trajectory(
+    space: Space,
+    system: System,
+    start: ArrayLike,
+    goal: ArrayLike,
+    *,
+    algorithm: Any = 'auto',
+    goal_radius: float = 0.0,
+    goal_speed: float = math.inf,
+    time_limit: float = 1.0,
+    max_iterations: int | None = None,
+    seed: int | None = None,
+    simplify: bool = True,
+    optimize_for: float = 0.0,
+    optimize_iterations: int = 0,
+    cancel: Event | None = None,
+    **settings: Any,
+) -> TrajectoryResult:
+    """Find a trajectory of a system from a state ``start`` to the point ``goal`` (dim,)."""
+    effort = check_effort(
+        time_limit=time_limit,
+        max_iterations=max_iterations,
+        optimize_for=optimize_for,
+        optimize_iterations=optimize_iterations,
+        cancel=cancel,
+    )
+    request = check_kinodynamic_request(
+        space,
+        start,
+        goal,
+        system,
+        algorithm=algorithm,
+        settings=settings,
+        goal_radius=goal_radius,
+        goal_speed=goal_speed,
+        simplify=simplify,
+        seed=seed,
+    )
+    return plan_motion(request, effort)
+
+
+def plan_motion(request: KinodynamicRequest, effort: Effort) -> TrajectoryResult:
+    """Plan for a validated request, within the limits of ``effort``."""
     _compile(request)
-    began = time.perf_counter()
-    limits = Budget(began + seconds, transitions, cancel)
+    began = working_time()
+    limits = effort.budget(began)
     known = _without_search(request)
     if known is not None:
         return _answer(request, *known, limits, began)
     status, search, found = _search(request, limits)
     if found is None:
-        spent = f'{search.iterations} transitions, {time.perf_counter() - began:.3g} s'
+        spent = f'{search.iterations} transitions, {working_time() - began:.3g} s'
         return _answer(request, status, f'{status.value} ({spent})', None, limits, began, search)
     motion, trajectory = found
-    first = FirstSolution(time.perf_counter() - began, trajectory.length)
+    first = FirstSolution(working_time() - began, trajectory.length, trajectory.positions)
     if isinstance(request.system, DoubleIntegrator) and request.geometric.simplify:
-        until = began + (improve_seconds or math.inf)
-        rounds = improve_rounds if improve_rounds or not improve_seconds else math.inf
-        improving = Budget(min(limits.deadline, until), cancel=cancel)
-        proposals = PROPOSALS + PROPOSALS_AGAIN * rounds
+        improving = effort.optimizing(limits, began)
+        proposals = PROPOSALS + PROPOSALS_AGAIN * effort.optimize_rounds
         trajectory = _shortened(request, motion, trajectory, proposals, improving)
         limits.cut = limits.cut or improving.cut
     message = (
@@ -258,7 +298,7 @@ def _answer(
     began: float,
     search: KinodynamicSearch | None = None,
     first: FirstSolution | None = None,
-) -> PlanResult:
+) -> TrajectoryResult:
     """Return the answer; one without a search has the start as its only sample, if it is free."""
     space, dim = request.geometric.space, request.system.dim
     length = math.inf if trajectory is None else trajectory.length
@@ -269,8 +309,8 @@ def _answer(
         free = 0 if trajectory is None else 1
         samples, parents = np.tile(request.geometric.start, (free, 1)), np.full(free, -1)
     if trajectory is not None and first is None:
-        first = FirstSolution(time.perf_counter() - began, length)
-    return PlanResult(
+        first = FirstSolution(working_time() - began, length, trajectory.positions)
+    return TrajectoryResult(
         status=status,
         message=message,
         planner=request.planner.name,
@@ -280,7 +320,7 @@ def _answer(
         parents=parents,
         iterations=0 if search is None else search.iterations,
         counts={} if search is None else search.counts,
-        elapsed=time.perf_counter() - began,
+        elapsed=working_time() - began,
         seed=request.geometric.seed,
         cut_by_time=limits.cut,
         first_solution=first,

@@ -3,7 +3,7 @@
 from typing import Any
 
 from hnr_planner.core.errors import RequestError
-from hnr_planner.core.planning.registry import make_planner
+from hnr_planner.core.planning.registry import make_planner, PlannerEntry
 from hnr_planner.core.systems.double_integrator import DoubleIntegrator
 from hnr_planner.core.systems.system import System
 from hnr_planner.core.trajectories.connect import KinodynamicConnect
@@ -34,7 +34,11 @@ def make_kinodynamic_planner(
     """
     connects = isinstance(system, DoubleIntegrator)
     best = KinodynamicConnect if connects else KinodynamicRRT
-    planner: Any = make_planner(algorithm, settings, {'auto': best, **KINODYNAMIC_PLANNERS})
+    entries = [
+        PlannerEntry(name, kind.__module__, kind.__name__, '')
+        for name, kind in {'auto': best, **KINODYNAMIC_PLANNERS}.items()
+    ]
+    planner: Any = make_planner(algorithm, settings, entries)
     if not hasattr(planner, 'boundary'):
         raise RequestError(f'{planner.name} plans without a system; one of {_names()} has to')
     if isinstance(planner, KinodynamicConnect) and not connects:

@@ -75,6 +75,8 @@ def test_the_first_solution_is_kept_beside_the_simplified_path():
     assert result.first_solution.length == raw.length == raw.first_solution.length
     assert result.length < raw.length
     assert result.first_solution.elapsed <= result.elapsed
+    np.testing.assert_array_equal(result.first_solution.path, raw.path)
+    np.testing.assert_array_equal(raw.first_solution.path, raw.path)
     assert len(result.paths) == 1 and result.paths[0] is result.path
 
 
@@ -117,6 +119,22 @@ def test_inputs_are_not_changed():
     plan(SPACE, start, goal, seed=0)
     np.testing.assert_array_equal(start, START)
     np.testing.assert_array_equal(goal, GOAL)
+
+
+def test_counts_are_those_of_all_searches():
+    """RRT rejects a share of its proposals in each search."""
+    request = {'algorithm': 'rrt', 'seed': 4, 'time_limit': math.inf}
+    counts = [
+        plan(SPACE, START, GOAL, optimize_iterations=n, **request).counts['rejected_proposals']
+        for n in (0, 1, 5)
+    ]
+    assert 0 < counts[0] < counts[1] < counts[2]
+
+
+def test_a_result_shows_what_it_is_without_its_arrays():
+    shown = repr(plan(SPACE, START, GOAL, seed=4))
+    assert shown.startswith('PlanResult(SOLVED, length=') and 'vertices=' in shown
+    assert 'array' not in shown and len(shown) < 150
 
 
 # -- refused at once -----------------------------------------------------------------------------
@@ -335,6 +353,12 @@ def test_a_region_larger_than_a_large_map_costs_little():
         ({'algorithm': 'rrt', 'max_step': 'far'}, "max_step must be a number, got 'far'"),
         ({'start': (10**400, 1)}, 'start must be numbers'),
         ({'algorithm': RRT(), 'max_step': 1.0}, 'go with the name of a planner only'),
+        ({'clearance': -1.0}, 'clearance must be in'),
+        ({'clearance': 0.1, 'simplify': False}, 'clearance must be 0 when simplify is false'),
+        ({'alternatives': 2, 'simplify': False}, 'alternatives must be 1 when simplify is false'),
+        ({'cancel': True}, 'cancel must be an event'),
+        ({'system': None}, 'plan takes no system: .* plan_trajectory'),
+        ({'goal_speed': 0.0}, 'plan takes no goal_speed: .* plan_trajectory'),
     ],
 )
 def test_a_malformed_argument_is_a_value_error_that_names_the_value(arguments, words: str):

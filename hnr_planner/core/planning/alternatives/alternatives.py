@@ -9,10 +9,10 @@ different homology classes are found, and each is pulled taut within its class.
 from dataclasses import replace
 from itertools import pairwise
 import math
-import time
 
 from hnr_planner.core.checks import check_count, Floats
 from hnr_planner.core.errors import RequestError
+from hnr_planner.core.kernels.clock import working_time
 from hnr_planner.core.kernels.kernel import kernel
 from hnr_planner.core.lengths import path_length
 from hnr_planner.core.planning.alternatives.class_graph import (
@@ -25,8 +25,8 @@ from hnr_planner.core.planning.alternatives.class_graph import (
     START,
 )
 from hnr_planner.core.planning.homology import islands_at, NO_ISLANDS, signature
-from hnr_planner.core.planning.limits import Budget
-from hnr_planner.core.planning.planner import compile_search
+from hnr_planner.core.planning.limits import Budget, run
+from hnr_planner.core.planning.planner import compile_search, Work
 from hnr_planner.core.planning.planners.hit_and_run_connect import HitAndRunConnect
 from hnr_planner.core.planning.planners.rrt import draw_in_box
 from hnr_planner.core.planning.postprocessing.clearance import increase_clearance
@@ -66,38 +66,40 @@ def check_alternatives(space: Space, alternatives: int, simplify: bool) -> int:
 
 
 def with_alternatives(
-    request: Request, answer: PlanResult, n_paths: int, limits: Budget, began: float
+    request: Request, result: PlanResult, n_paths: int, limits: Budget, began: float
 ) -> PlanResult:
-    """Return a solved request's answer with up to ``n_paths`` paths of different classes."""
-    paths, iterations = _find(request, answer.path, n_paths, limits)
+    """Return a solved request's result with up to ``n_paths`` paths of different classes."""
+    paths, more_work = _find(request, result.path, n_paths, limits)
+    work = Work(result.iterations, result.counts).plus(more_work)
     lengths = ', '.join(f'{path_length(path):.6g}' for path in paths)
-    iterations += answer.iterations
     return replace(
-        answer,
-        message=f'{len(paths)} of {n_paths} paths, of {lengths} m, after {iterations} transitions',
+        result,
+        message=f'{len(paths)} of {n_paths} paths, of {lengths} m, after {work.iterations} '
+        'transitions',
         path=paths[0],
         others=tuple(paths[1:]),
         length=path_length(paths[0]),
-        iterations=iterations,
-        elapsed=time.perf_counter() - began,
+        iterations=work.iterations,
+        counts=work.counts,
+        elapsed=working_time() - began,
         cut_by_time=limits.cut,
     )
 
 
 def _find(
     request: Request, path: Floats, n_paths: int, limits: Budget
-) -> tuple[list[Floats], int]:
+) -> tuple[list[Floats], Work]:
     """
     Find the shortest paths of up to ``n_paths`` classes with the ends of ``path`` (m, dim).
 
     It stands for its class until a shorter one is found there. A limit ends this early, with what
-    is known by then. Returns the paths, the shortest first, and transitions handled.
+    is known by then. Returns the paths, the shortest first, and the work of the searches.
     """
     space = request.space
     if np.array_equal(path[0], path[-1]):
-        return [path], 0
+        return [path], Work(0, {})
     islands = islands_at(np.asarray(space.island_points))
-    graph, iterations = _explore(request, path, limits)
+    graph, work = _explore(request, path, limits)
     shortest = {signature(islands, space.to_kernel(path)): path}
     found = shortest_classes(graph, islands, SOUGHT * n_paths) if limits.stop() is None else []
     for number, points in enumerate(found):
@@ -113,28 +115,28 @@ def _find(
         if is_simple(points):
             among = signature(islands, points)
             shortest[among] = min(shortest.get(among, taut), taut, key=path_length)
-    return sorted(shortest.values(), key=path_length)[:n_paths], iterations
+    return sorted(shortest.values(), key=path_length)[:n_paths], work
 
 
-def _explore(request: Request, path: Floats, limits: Budget) -> tuple[ClassGraph, int]:
-    """Return a graph of points of the start's part of the space, and transitions handled."""
+def _explore(request: Request, path: Floats, limits: Budget) -> tuple[ClassGraph, Work]:
+    """Return a graph of points of the start's component, and the work of the searches."""
     ways = [request.space.to_kernel(path)]
     ends = ways[0][0], ways[0][-1]
     draws = np.empty((POINTS, request.space.dim))
     n_draws = _draw_points(request.problem, request.stream(0, EXPLORE, 1), draws)
-    iterations = 0
+    work = Work(0, {})
     for number, via in enumerate(draws[: min(VIAS, n_draws)]):
         halves = []
         for half, (a, b) in enumerate(pairwise((ends[0], via, ends[1]))):
             problem = request.problem._replace(start=a, goal=b, goal_radius=0.0)
             rng = request.stream(number, EXPLORE, 2, half)
             search = HitAndRunConnect().start(problem, rng)
-            if limits.run(search) is PlannerStatus.SOLVED:
+            if run(search, limits) is PlannerStatus.SOLVED:
                 halves.append(skip_vertices(request.space, search.path, limits)[0])
-            iterations += search.iterations
+            work = work.plus(Work.of(search))
         if len(halves) == 2:
             ways.append(np.concatenate([halves[0], halves[1][1:]]))
-    return _linked(request, ways, draws[:n_draws], limits), iterations
+    return _linked(request, ways, draws[:n_draws], limits), work
 
 
 def _linked(request: Request, ways: list[Floats], others: Floats, limits: Budget) -> ClassGraph:

@@ -11,7 +11,7 @@ other tree among the vertices around it and at one anywhere.
 from dataclasses import dataclass, field
 from typing import ClassVar, NamedTuple
 
-from hnr_planner.core.checks import check_number, Floats
+from hnr_planner.core.checks import Floats
 from hnr_planner.core.kernels.borrowed import borrowed
 from hnr_planner.core.kernels.kernel import kernel
 from hnr_planner.core.kernels.streams import Stream, uniform
@@ -66,23 +66,9 @@ class Trees(NamedTuple):
 
 @dataclass(frozen=True)
 class HitAndRunConnect:
-    """
-    Trees of Hit-and-Run steps from both ends.
-
-    Attributes
-    ----------
-    clearance : float
-        Distance to obstacles [m] that the path keeps where there is room; narrower places are
-        passed in their middle. 0 for the shortest path.
-
-    """
-
-    clearance: float = 0.0
+    """Trees of Hit-and-Run steps from both ends. It has no settings."""
 
     name: ClassVar[str] = 'hit_and_run_connect'
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, 'clearance', check_number('clearance', self.clearance, 0.0, 1e6))
 
     def start(self, problem: Problem, rng: Stream) -> 'HitAndRunConnectSearch':
         """Start a tree at each end."""
@@ -151,7 +137,7 @@ def _plant(problem, rows):
         np.empty(rows, dtype=np.int64),
         np.empty((rows, 2), dtype=np.int64),
         np.zeros(2, dtype=np.int64),
-        empty_frontier(problem.lower, problem.upper, problem.clearance),
+        empty_frontier(problem.lower, problem.upper, problem.typical_clearance),
         np.empty((2, len(problem.start))),
     )
     trees.vertices[0] = problem.start

@@ -6,10 +6,10 @@ The work is bounded by the number of visibility tests.
 """
 
 import math
-import time
 
 from hnr_planner.core.checks import check_count, check_number, check_points, check_seed, Floats
 from hnr_planner.core.errors import RequestError
+from hnr_planner.core.kernels.clock import working_time
 from hnr_planner.core.kernels.streams import Stream, stream
 from hnr_planner.core.lengths import path_length
 from hnr_planner.core.planning.homology import Islands, NO_ISLANDS
@@ -73,7 +73,7 @@ def simplify(
     max_iterations = check_count('max_iterations', max_iterations, 0)
     seconds = math.inf if time_limit is None else check_number('time_limit', time_limit, 0.0)
     compile_shorten(space, path)
-    limits = Budget(time.perf_counter() + seconds)
+    limits = Budget(working_time() + seconds)
     return shorten(space, path, stream(check_seed(seed)), limits, max_iterations)
 
 

@@ -1,7 +1,7 @@
 """An occupancy grid as a space: what is free, what is connected, how far the walls are."""
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Literal
 
@@ -20,6 +20,9 @@ from hnr_planner.core.spaces.transformed import PlacedData
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+#: Value of cells of a Nav2 costmap that an obstacle's inflation blocks; obstacles have 100. A
+#: caller who takes cells from this value on as occupied has such a costmap.
+COSTMAP_INFLATED = 99
 #: Cells looked at, about, for a mean over all of a map.
 TYPICAL_CELLS = 10_000
 
@@ -48,6 +51,8 @@ class GridSpace(Space):
     robot_radius: float
     data: GridData
     _wall_distance: NDArray[np.uint8]
+    #: Cells that the inflation of a costmap blocks; None for a map that is no costmap.
+    _costmap_inflation: Bools | None = None
 
     dim = 2
 
@@ -77,7 +82,8 @@ class GridSpace(Space):
             A cell is blocked when its centre is within this distance [m] of the centre of an
             occupied cell. Unknown cells and the map's edge block, but are not inflated.
         occupied_threshold : int
-            Cells of at least this value, 1..100, are occupied.
+            Cells of at least this value, 1..100, are occupied. For a costmap of Nav2 it is 99:
+            then cells of 99 are known to be inflation, and those of 100 to be obstacles.
         unknown : 'blocked' or 'free'
             What unknown cells are.
 
@@ -88,7 +94,10 @@ class GridSpace(Space):
 
         """
         occupied, closed = read_occupancy(data, occupied_threshold, unknown)
-        return cls._build(occupied, closed, resolution, origin, robot_radius)
+        space = cls._build(occupied, closed, resolution, origin, robot_radius)
+        if occupied_threshold == COSTMAP_INFLATED:
+            space = replace(space, _costmap_inflation=np.asarray(data) == COSTMAP_INFLATED)
+        return space
 
     @classmethod
     def from_blocked(
@@ -192,6 +201,14 @@ class GridSpace(Space):
         cells = np.stack([np.asarray(columns), np.asarray(rows)], axis=-1)
         return self.frame.from_kernel(cells + (self.frame.RIM + 0.5))
 
+    def to_cells(self, points: Floats) -> Floats:
+        """Return (column, row) of points (..., 2) [m] of the map frame, from the grid's corner."""
+        return self.frame.to_kernel(points) - self.frame.RIM
+
+    def from_cells(self, cells: Floats) -> Floats:
+        """Return points (..., 2) [m] of the map frame at (column, row) from the grid's corner."""
+        return self.frame.from_kernel(cells + self.frame.RIM)
+
     # -- what is free ----------------------------------------------------------------------------
 
     @property
@@ -203,6 +220,28 @@ class GridSpace(Space):
     def occupied(self) -> Bools:
         """Cells (rows, cols) that the map says are occupied, before inflation."""
         return self._wall_distance[1:-1, 1:-1] == 0
+
+    def is_obstacle(self, row: int, column: int) -> bool:
+        """Return whether a cell is occupied, other than by the inflation of a costmap."""
+        inflation = self._costmap_inflation
+        is_inflation = inflation is not None and bool(inflation[row, column])
+        return bool(self._wall_distance[row + 1, column + 1] == 0) and not is_inflation
+
+    def inflated(self, rows: slice, columns: slice) -> Bools:
+        """Return which cells of a window are near an obstacle, not in it: blocked by inflation."""
+        cells = self.robot_radius / self.resolution
+        reach = int(min(cells, max(self.shape))) + 1
+        top, left = max(rows.start - reach, 0), max(columns.start - reach, 0)
+        bottom, right = rows.stop + reach, columns.stop + reach
+        occupied = self._wall_distance[1:-1, 1:-1][top:bottom, left:right] == 0
+        inner = (
+            slice(rows.start - top, rows.stop - top),
+            slice(columns.start - left, columns.stop - left),
+        )
+        inflated = inflate(occupied, cells)[inner] & ~occupied[inner]
+        if self._costmap_inflation is not None:
+            inflated |= self._costmap_inflation[rows, columns]
+        return inflated
 
     def reaches_to(self, point: ArrayLike) -> bool:
         """Say whether ``point`` (2,) [m] lies on the map, its edge included."""
@@ -223,20 +262,15 @@ class GridSpace(Space):
             )
         row, column = int(y), int(x)
         cell = f'cell [{row}, {column}]'
-        if self.occupied[row, column]:
+        if self.is_obstacle(row, column):
             return f'inside an obstacle: {cell} is occupied'
         if not self.blocked[row, column]:
             return f'on the edge of a blocked cell beside {cell}'
-        if self._is_near_wall(row, column):
+        if self._wall_distance[row + 1, column + 1] == 0:
+            return f'within the inflation of the costmap around an obstacle, in {cell}'
+        if self.inflated(slice(row, row + 1), slice(column, column + 1)).item():
             return f'within the robot radius of {self.robot_radius:g} m of an obstacle, in {cell}'
         return f'in unknown space: {cell} is unknown'
-
-    def _is_near_wall(self, row: int, column: int) -> bool:
-        reach = int(min(self.robot_radius / self.resolution, max(self.shape))) + 1
-        top, left = max(row - reach, 0), max(column - reach, 0)
-        bottom, right = row + reach + 1, column + reach + 1
-        window = self.occupied[top:bottom, left:right]
-        return bool(inflate(window, self.robot_radius / self.resolution)[row - top, column - left])
 
     # -- what is connected -----------------------------------------------------------------------
 
@@ -249,6 +283,15 @@ class GridSpace(Space):
         """
         part = self._part(check_point('a', a, 2))
         return part != 0 and part == self._part(check_point('b', b, 2))
+
+    @property
+    def components(self) -> NDArray[np.int32]:
+        """Component (rows, cols) of free space that each cell belongs to; 0 where blocked."""
+        return self.data.labels[1:-1, 1:-1]
+
+    def component_of(self, point: ArrayLike) -> int:
+        """Return the component that holds ``point`` (2,) [m]; 0 where it is not free."""
+        return self._part(check_point('point', point, 2))
 
     def region_reachable(self, start: ArrayLike, goal: ArrayLike, radius: float) -> bool:
         """Say whether a path leads from ``start`` to within ``radius`` [m] of ``goal``."""
