@@ -162,6 +162,12 @@ def compile_search(planner: Planner, problem: Problem) -> None:
         search.advance(0)
 
 
+def for_space(planner: Planner, space: Space) -> Planner:
+    """Return a planner with what it needs to know of a space, where it needs anything."""
+    bind = getattr(planner, 'for_space', None)
+    return planner if bind is None else bind(space)
+
+
 def to_goal(problem: Problem, points: Floats) -> Floats:
     """Return ``points`` (m, dim), whose last one reaches the goal, with an exact goal added."""
     return points if problem.goal_radius > 0.0 else np.vstack([points, problem.goal])

@@ -75,6 +75,12 @@ PLANNERS = (
         'RRTConnect',
         'RRT-Connect: RRTs from both ends, each extended towards the new vertices of the other',
     ),
+    PlannerEntry(
+        'polyanya',
+        f'{_PLANNERS}.polyanya',
+        'Polyanya',
+        'the shortest path on a grid, exactly',
+    ),
 )
 
 #: Names that ``plan`` takes.
@@ -112,7 +118,7 @@ def make_planner(
     if algorithm not in by_name:
         raise RequestError(f'algorithm must be one of {", ".join(by_name)}, got {algorithm!r}')
     kind = by_name[algorithm].load()
-    known = [field.name for field in fields(kind)]
+    known = [field.name for field in fields(kind) if field.repr]
     for setting in settings:
         if setting not in known:
             has = ', '.join(known) or 'no settings'

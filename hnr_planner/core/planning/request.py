@@ -10,7 +10,13 @@ from hnr_planner.core.errors import RequestError
 from hnr_planner.core.kernels.kernel import kernel
 from hnr_planner.core.kernels.streams import Stream, stream
 from hnr_planner.core.planning.limits import Budget
-from hnr_planner.core.planning.planner import make_problem, Planner, Problem, reaches_goal
+from hnr_planner.core.planning.planner import (
+    for_space,
+    make_problem,
+    Planner,
+    Problem,
+    reaches_goal,
+)
 from hnr_planner.core.planning.registry import make_planner
 from hnr_planner.core.planning.result import PlannerStatus
 from hnr_planner.core.spaces.primitives import component
@@ -157,7 +163,7 @@ def check_request(
     """Return the request that a caller's arguments make, or raise RequestError."""
     start, goal = check_point('start', start, space.dim), check_point('goal', goal, space.dim)
     goal_radius = check_number('goal_radius', goal_radius, 0.0)
-    planner = make_planner(algorithm, settings or {})
+    planner = for_space(make_planner(algorithm, settings or {}), space)
     return Request(
         space,
         start,
