@@ -16,7 +16,7 @@ from typing import NamedTuple
 from hnr_planner.core.checks import Floats
 from hnr_planner.core.kernels.borrowed import borrowed
 from hnr_planner.core.kernels.kernel import kernel
-from hnr_planner.core.spaces.grid.slabs import LEFT, OFF_LINE, RIGHT, slab_at, THROUGH
+from hnr_planner.core.spaces.grid.slabs import LEFT, RIGHT, slab_at, THROUGH
 import numpy as np
 from numpy.typing import NDArray
 
@@ -65,7 +65,7 @@ class Frontier(NamedTuple):
 
 @kernel
 def open_frontier(slabs, start, goal, room):
-    """Return the state of a search from ``start`` to ``goal`` (2,), both free and off grid lines."""
+    """Return the state of a search from ``start`` to ``goal`` (2,), free and off grid lines."""
     frontier = Frontier(
         np.empty((room, 7)),
         np.empty((room, 5)),
@@ -109,7 +109,11 @@ def room_at(slabs, start):
 
 @kernel
 def expand(slabs, frontier, goal, goal_slab, n_iterations):
-    """Expand at most ``n_iterations`` nodes; fewer when solved, exhausted or out of rows: how many."""
+    """
+    Expand at most ``n_iterations`` nodes, and return how many.
+
+    It ends early when the goal is reached, no node is open, or there are no rows left.
+    """
     slabs, frontier, goal = borrowed(slabs), borrowed(frontier), borrowed(goal)
     sizes, nodes, vertices = frontier.sizes, frontier.nodes, frontier.vertices
     for i in range(n_iterations):
@@ -174,7 +178,7 @@ def _expand_ahead(slabs, frontier, goal, row, first, last):
 
 @kernel
 def _expand_around(slabs, frontier, goal, row, side, slab, holds_goal):
-    """Add what node ``row`` does not see, but reaches by a bend at the corner on one side of it."""
+    """Add what lies beyond a bend at the corner on one side of node ``row``."""
     nodes, vertices = frontier.nodes, frontier.vertices
     up, root, portal = int(nodes[row, UP]), int(nodes[row, ROOT]), int(nodes[row, PORTAL])
     x, y = vertices[root, X], vertices[root, Y]
@@ -231,7 +235,7 @@ def _reach_goal(slabs, frontier, goal, row):
 
 @kernel
 def _reach_corner(frontier, root, x, y, corner):
-    """Add the vertex at a corner reached from vertex ``root``; NONE where a shorter way is known."""
+    """Add the vertex at a corner reached from ``root``; NONE where a shorter way is known."""
     vertices = frontier.vertices
     distance = vertices[root, DISTANCE] + math.hypot(x - vertices[root, X], y - vertices[root, Y])
     if distance >= NEARER * frontier.nearest[corner]:

@@ -131,7 +131,7 @@ class PolyanyaSearch:
         rows = rows_to(self.parents, int(frontier.sizes[FINAL]))
         corners = frontier.vertices[rows[1:], CORNER].astype(np.int64)
         steps = self.slabs.steps.reshape(-1, 2)[corners]
-        bends = frontier.vertices[rows[1:], X : X + 2] + problem.margin * steps  # noqa: E203
+        bends = frontier.vertices[rows[1:], X : X + 2] + problem.margin * steps
         points = np.vstack([problem.start, bends, problem.goal])
         return step_aside(problem.space, points, problem.margin)
 
@@ -203,7 +203,7 @@ def step_aside(space, points, margin):
 
 @kernel
 def _step_from(free_distance, x, y):
-    """Return the direction away from the one blocked cell at a corner; (0, 0) for no such corner."""
+    """Return the direction away from the one blocked cell at a corner; (0, 0) if not one."""
     step, n_blocked = np.zeros(2), 0
     for row, up in ((y - 1, 1.0), (y, -1.0)):
         for column, right in ((x - 1, 1.0), (x, -1.0)):

@@ -63,7 +63,7 @@ class Slabs(NamedTuple):
 
 @kernel
 def build_slabs(free):
-    """Return the slabs of a grid: cells (rows, columns), nonzero where free, with a blocked rim."""
+    """Return the slabs of cells (rows, columns), nonzero where free; the rim is blocked."""
     starts, ends, rows = _free_runs(free)
     runs, boxes = _merge_runs(starts, ends, rows)
     portals = _find_portals(runs, boxes, rows)
@@ -170,7 +170,11 @@ def _steps_aside(portals, boxes):
 
 @kernel
 def _find_dead_ends(portals, above, below):
-    """Return where the slabs (n_slabs,) of dead ends lead back to: slabs with one way on, again and again."""
+    """
+    Return the exit (n_slabs,) of each slab.
+
+    A slab with one neighbour is a dead end, and so is one with one neighbour that is none.
+    """
     n_slabs = len(above)
     exits, degrees = np.full(n_slabs, THROUGH, dtype=np.int32), np.empty(n_slabs, dtype=np.int32)
     stack, n_stack = np.empty(n_slabs, dtype=np.int32), 0
