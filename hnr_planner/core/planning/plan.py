@@ -89,10 +89,12 @@ def plan(
         measures the distance to its walls.
     optimize_for : float
         Seconds of the call, within the time limit, in which further searches look for a shorter
-        path; a straight one ends that.
+        path; a straight one ends that. The clock only cuts: searches are bounded by their number,
+        in proportion to the seconds, and end sooner when several in a row gain nothing. So the
+        same seed gives the same path on a machine that is fast enough.
     optimize_iterations : int
-        How many more searches to run for a shorter path; together with ``optimize_for`` whichever
-        ends first.
+        Number of further searches for a shorter path; together with ``optimize_for`` whichever
+        ends first, in place of the bound above.
     alternatives : int
         How many paths to look for, none of which can be deformed into another past an obstacle:
         ``PlanResult.paths``, the shortest first. There may be fewer. All have the same ends, also
@@ -175,14 +177,15 @@ def _result_of_search(
     best = attempt(request, 0, budget, began, optimizing)
     first, work = best.first, Work.of(best.search)
     if first is not None and optimizing is not None:
-        best, work = optimize(request, best, effort.optimize_rounds, optimizing, began)
+        rounds, patience = effort.optimize_rounds, effort.optimize_patience
+        best, work = optimize(request, best, rounds, patience, optimizing, began)
         budget.cut = budget.cut or optimizing.cut
     samples = request.space.from_kernel(best.search.samples)
     samples[0] = request.start
     return PlanResult(
         status=best.status,
-        message=_message(best, work.iterations, began),
-        planner=request.planner.name,
+        message=_message(request, best, work.iterations, began),
+        planner=getattr(best.search, 'made_by', request.planner.name),
         path=best.path,
         length=path_length(best.path) if len(best.path) else math.inf,
         samples=samples,
@@ -224,11 +227,13 @@ def _result_without_search(
     )
 
 
-def _message(best: Attempt, iterations: int, began: float) -> str:
+def _message(request: Request, best: Attempt, iterations: int, began: float) -> str:
     """Return a description of how a search ended."""
-    if best.status is PlannerStatus.SOLVED:
+    if best.status is PlannerStatus.SOLVED and best.first is not None:
         found = f'path of {path_length(best.path):.6g} m with {len(best.path)} vertices'
-        return f'{found} after {iterations} transitions'
+        as_found = request.simplify and not best.search.taut and best.path is best.first.path
+        nothing = ', of which no shortcut is free' if as_found and len(best.path) > 2 else ''
+        return f'{found} after {iterations} transitions{nothing}'
     seconds = working_time() - began
     return f'{best.status.value} ({iterations} transitions, {seconds:.3g} s)'
 

@@ -11,7 +11,7 @@ from hnr_planner.core import GridSpace
 from hnr_planner.core.kernels import kernel as kernels
 from hnr_planner.core.kernels.kernel import interpreted
 from hnr_planner.core.kernels.streams import stream
-from hnr_planner.core.planning.alternatives.alternatives import class_graph
+from hnr_planner.core.planning.alternatives import class_graph
 from hnr_planner.core.planning.homology import islands_at, NO_ISLANDS
 from hnr_planner.core.planning.planner import Problem
 from hnr_planner.core.planning.planners import hit_and_run_connect as connect

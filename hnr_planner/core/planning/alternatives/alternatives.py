@@ -27,7 +27,7 @@ from hnr_planner.core.planning.alternatives.class_graph import (
 from hnr_planner.core.planning.homology import islands_at, NO_ISLANDS, signature
 from hnr_planner.core.planning.limits import Budget, run
 from hnr_planner.core.planning.planner import compile_search, Work
-from hnr_planner.core.planning.planners.hit_and_run_connect import HitAndRunConnect
+from hnr_planner.core.planning.planners.auto import Auto
 from hnr_planner.core.planning.planners.rrt import draw_in_box
 from hnr_planner.core.planning.postprocessing.clearance import increase_clearance
 from hnr_planner.core.planning.postprocessing.simplify import shorten, skip_vertices
@@ -134,7 +134,7 @@ def _explore(request: Request, path: Floats, budget: Budget) -> tuple[ClassGraph
         for half, (a, b) in enumerate(pairwise((ends[0], via, ends[1]))):
             problem = request.problem._replace(start=a, goal=b, goal_radius=0.0)
             rng = request.stream(number, EXPLORE, 2, half)
-            search = HitAndRunConnect().start(problem, rng)
+            search = Auto().start(problem, rng)
             if run(search, budget) is PlannerStatus.SOLVED:
                 halves.append(skip_vertices(request.space, search.path, budget)[0])
             work = work.plus(Work.of(search))
@@ -182,4 +182,4 @@ def compile_alternatives(request: Request) -> None:
     signature(NO_ISLANDS, ends)
     is_simple(ends)
     _draw_points(request.problem, request.stream(0), ends[:0])
-    compile_search(HitAndRunConnect(), request.problem)
+    compile_search(Auto(), request.problem)

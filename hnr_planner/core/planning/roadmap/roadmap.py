@@ -18,7 +18,7 @@ from hnr_planner.core.kernels.borrowed import borrowed
 from hnr_planner.core.kernels.kernel import kernel
 from hnr_planner.core.kernels.streams import Stream, stream
 from hnr_planner.core.planning.planner import compile_search, make_problem, PathSearch, Problem
-from hnr_planner.core.planning.planners.hit_and_run_connect import HitAndRunConnect
+from hnr_planner.core.planning.planners.auto import Auto
 from hnr_planner.core.planning.roadmap.build import build_data, N_DRAWS
 from hnr_planner.core.planning.roadmap.data import empty_roadmap, RoadmapData
 from hnr_planner.core.planning.roadmap.exits import visible_nodes, walk_to_node
@@ -138,7 +138,7 @@ class Roadmap:
             ahead, back = (walk_to_node(space, nodes, exits, end[0], rng) for end in ends)
             path = shortest_path(space, nodes, paths, exits, ahead, back)
             taut = False
-        return SolvedSearch(path, taut) if len(path) else HitAndRunConnect().start(problem, rng)
+        return SolvedSearch(path, taut) if len(path) else Auto().start(problem, rng)
 
 
 @dataclass
@@ -195,7 +195,7 @@ def _compile(space: Space) -> None:
     shortest_path(space.data, *for_nodes, lower[np.newaxis], upper[np.newaxis])
     walk_to_node(space.data, nothing.nodes, nothing.exits, lower, rng)
     start, goal = space.bounds
-    compile_search(HitAndRunConnect(), make_problem(space, start, goal, goal_radius=0.0))
+    compile_search(Auto(), make_problem(space, start, goal, goal_radius=0.0))
 
 
 def _same_frame(a: Space, b: Space) -> bool:
