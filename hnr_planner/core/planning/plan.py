@@ -14,24 +14,19 @@ from hnr_planner.core.kernels.clock import working_time
 from hnr_planner.core.lengths import path_length
 from hnr_planner.core.planning.alternatives.alternatives import (
     check_alternatives,
-    compile_alternatives,
     with_alternatives,
 )
 from hnr_planner.core.planning.attempts import Attempt, attempt, optimize, with_clearance
 from hnr_planner.core.planning.ends import check_allowance, move_ends
 from hnr_planner.core.planning.limits import Budget
-from hnr_planner.core.planning.planner import compile_search, Planner, Work
-from hnr_planner.core.planning.postprocessing.clearance import compile_clearance
-from hnr_planner.core.planning.postprocessing.simplify import compile_shorten
+from hnr_planner.core.planning.planner import Planner, Work
 from hnr_planner.core.planning.request import (
     check_effort,
     check_request,
     Effort,
-    outcome_without_search,
     Request,
 )
 from hnr_planner.core.planning.result import FirstSolution, PlannerStatus, PlanResult
-from hnr_planner.core.spaces.primitives import kind_of
 from hnr_planner.core.spaces.space import Space
 import numpy as np
 from numpy.typing import ArrayLike
@@ -145,7 +140,6 @@ def plan(
     )
     n_paths = check_alternatives(space, alternatives, request.simplify)
     allowance = check_allowance(space, goal_tolerance, start_escape)
-    _compile(request, n_paths)
 
     began = working_time()
     budget = effort.budget(began)
@@ -236,25 +230,3 @@ def _message(request: Request, best: Attempt, iterations: int, began: float) -> 
         return f'{found} after {iterations} transitions{nothing}'
     seconds = working_time() - began
     return f'{best.status.value} ({iterations} transitions, {seconds:.3g} s)'
-
-
-_compiled: set[tuple[tuple[Any, ...], type[Planner], bool, bool]] = set()
-
-
-def _compile(request: Request, n_paths: int) -> None:
-    """Compile, once for each kind of space and planner, before any clock runs."""
-    space = request.space
-    kinds = kind_of(space.data), type(request.planner), n_paths > 1, request.clearance > 0.0
-    if kinds in _compiled:
-        return
-    compile_search(request.planner, request.problem)
-    outcome_without_search(request)
-    ends = np.stack([request.start, request.start])
-    compile_shorten(space, ends)
-    space.first_blocked_segment(ends)
-    space.rough_path(request.problem.start, request.problem.start)
-    if n_paths > 1:
-        compile_alternatives(request)
-    if request.clearance > 0.0:
-        compile_clearance(space, ends, request.clearance)
-    _compiled.add(kinds)

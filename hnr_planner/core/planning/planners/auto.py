@@ -53,7 +53,7 @@ class AutoSearch(HitAndRunConnectSearch):
 
     @property
     def path(self) -> Floats:
-        """The path (m, dim) of the trees, or that of the flood fill."""
+        """Path (m, dim) of the trees, or that of the flood fill."""
         return super().path if self._flooded is None else self._flooded
 
     def advance(self, n_iterations: int) -> None:
@@ -64,13 +64,13 @@ class AutoSearch(HitAndRunConnectSearch):
             return
         super().advance(until_flood)
         if not self.solved:
-            path = _flood(self.problem)
+            path = flood(self.problem)
             self._flooded = path if len(path) > 0 else None
             super().advance(n_iterations - until_flood)
 
 
 @kernel
-def _flood(problem):
+def flood(problem):
     """Return the path (m, dim) that the space knows; (0, dim) for none."""
     return flood_path(
         problem.space, problem.start, problem.goal, problem.goal_radius, problem.margin

@@ -73,7 +73,6 @@ def simplify(
     path = check_path(space, path)
     max_iterations = check_count('max_iterations', max_iterations, 0)
     seconds = math.inf if time_limit is None else check_number('time_limit', time_limit, 0.0)
-    compile_shorten(space, path)
     budget = Budget(working_time() + seconds)
     return shorten(space, path, stream(check_seed(seed)), budget, max_iterations)
 
@@ -220,13 +219,3 @@ def _pass_over(
         tests += used
     rest = np.arange(kept[n_kept - 1] + 1, len(points))
     return points[np.concatenate([kept[:n_kept], rest])], tests
-
-
-def compile_shorten(space: Space, points: Floats) -> None:
-    """Compile what ``shorten`` runs on this kind of space, without doing anything."""
-    skip(space.data, NO_ISLANDS, points, np.zeros(1, dtype=np.int64), 1, True, 0)
-    join(space.data, NO_ISLANDS, points, stream(0), 0)
-    following = np.arange(len(points))
-    relax(space.data, NO_ISLANDS, points, np.zeros(len(points)), following, 0, 0)
-    pull(space.data, NO_ISLANDS, points, 1, space.margin, 0)
-    path_length(points)
