@@ -17,6 +17,8 @@ from hnr_planner.core.kernels.modes import Mode, mode_of_thread
 from hnr_planner.core.kernels.needs import Workload
 from hnr_planner.core.planning.limits import Budget
 from hnr_planner.core.planning.plan import plan
+from hnr_planner.core.planning.planner import make_problem
+from hnr_planner.core.planning.planners.auto import flood
 from hnr_planner.core.planning.registry import ALGORITHMS
 from hnr_planner.core.sampling.sample import sample
 from hnr_planner.core.sampling.walks import WALKS
@@ -126,6 +128,7 @@ def find_paths() -> None:
             max_iterations=N_ITERATIONS,
         )
     plan(space, START, GOAL, seed=0, alternatives=2, clearance=1.0, time_limit=math.inf)
+    flood(make_problem(space, np.array(START), np.array(GOAL), 0.0))
     space.nearest_reachable(START, GOAL, 1.0)
     space.clearance(START)
     space.path_clearance([START, GOAL])

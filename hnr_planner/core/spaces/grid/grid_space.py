@@ -10,6 +10,7 @@ from hnr_planner.core.errors import RequestError, SpaceError
 from hnr_planner.core.spaces.bounds import in_words
 from hnr_planner.core.spaces.clearance import path_clearance, point_clearance
 from hnr_planner.core.spaces.curves.curve import first_exit_on_curve
+from hnr_planner.core.spaces.grid import flood  # noqa: F401  # registers its kernel
 from hnr_planner.core.spaces.grid.cells import Bools, read_blocked, read_occupancy
 from hnr_planner.core.spaces.grid.components import island_points, nearest_in_component
 from hnr_planner.core.spaces.grid.curves import first_exit_from_grid
