@@ -28,7 +28,7 @@ class Outcome(enum.Enum):
 
     @property
     def is_success(self) -> bool:
-        """Return whether the caller got what was asked for."""
+        """Return whether the caller got a path or draws."""
         return self in (Outcome.SOLVED, Outcome.SAMPLED)
 
 

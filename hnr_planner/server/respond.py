@@ -199,7 +199,7 @@ class _Job:
         Plan for a robot with inertia, at rest at the start.
 
         A goal that is blocked or unreachable gives way to the nearest point that the robot can
-        reach within the tolerance, and the words say so.
+        reach within the tolerance; ``why`` states it.
         """
         goal = request.goal.point
         result = self._search_trajectory(request, snapshot, goal, moved=False)

@@ -11,8 +11,10 @@ from test.ros.harness import Client, LATCHED, MANY, node_process, NodeProcess, u
 from typing import Any
 
 from geometry_msgs.msg import PoseStamped, PoseWithCovarianceStamped
-from hnr_planner.core import ALGORITHMS
+from hnr_planner.core.planning.registry import PlannerEntry, PLANNERS
+from hnr_planner.core.trajectories.registry import KINODYNAMIC_ENTRIES
 from hnr_planner.ros.messages.outcomes import read_outcome
+from hnr_planner.ros.node.planner import SERVICES
 from hnr_planner.server.outcomes import Outcome
 from nav_msgs.msg import OccupancyGrid
 from nav_msgs.srv import GetMap, GetPlan
@@ -87,8 +89,21 @@ def _full(name: str, node: str) -> str:
     return '/' + name.replace('~', node).lstrip('/')
 
 
-def test_page_of_the_service_names_every_algorithm() -> None:
-    assert all(f'`{name}`' in PAGES['plan'] for name in ALGORITHMS)
+@pytest.mark.parametrize(
+    ('page', 'entries'), [('plan', PLANNERS), ('trajectory', KINODYNAMIC_ENTRIES)]
+)
+def test_pages_name_every_planner_as_it_is_listed(
+    page: str, entries: tuple[PlannerEntry, ...]
+) -> None:
+    listed = [[entry.name, entry.summary] for entry in entries]
+    assert [cells for cells in rows(PAGES[page]) if cells in listed] == listed
+
+
+def test_every_planner_of_motions_has_a_page_and_a_service() -> None:
+    names = {f'plan_{entry.name}' for entry in KINODYNAMIC_ENTRIES}
+    assert names == {name for name in PAGES if name.startswith('plan_kinodynamic_')}
+    assert names < set(SERVICES)
+    assert set(SERVICES) == {name for name in PAGES if re.fullmatch('plan(_.*)?', name)}
 
 
 def test_pages_of_the_other_services_lead_to_what_all_share() -> None:

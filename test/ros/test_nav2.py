@@ -192,7 +192,21 @@ def test_newer_goal_takes_the_place_of_the_one_before(
     assert result_of(other.get_result_async()).status == GoalStatus.STATUS_ABORTED
 
 
-def test_validity_of_a_path(actions: dict[str, ActionClient], client: Client) -> None:
+def test_planner_of_motions_succeeds_without_an_error(
+    actions: dict[str, ActionClient], client: Client
+) -> None:
+    client.set_parameters(time_limit=600.0)
+    status, result = ask(
+        actions['compute_path_to_pose'], to_pose(planner_id='kinodynamic_connect')
+    )
+    client.set_parameters(time_limit=1.0)
+    assert status == GoalStatus.STATUS_SUCCEEDED
+    assert result.error_code == 0 and result.error_msg == '' and len(result.path.poses) > 2
+
+
+def test_validity_of_a_path(
+    actions: dict[str, ActionClient], client: Client, planner: NodeProcess
+) -> None:
     def judged(path: Path) -> tuple[bool, list[int]]:
         answer = client.call(IsPathValid, '/is_path_valid', IsPathValid.Request(path=path))
         return answer.is_valid, list(answer.invalid_pose_indices)
@@ -206,6 +220,8 @@ def test_validity_of_a_path(actions: dict[str, ActionClient], client: Client) ->
     path.header.frame_id = 'odom'
     assert judged(path) == (False, list(range(len(path.poses))))
     assert judged(Path()) == (False, [])
+    for why in ("in frame 'odom', the map in 'map'", 'the path has no poses', 'is not free'):
+        assert any('is_path_valid: ' in line and why in line for line in planner.log.splitlines())
 
 
 def test_examples_of_the_pages_work(client: Client, planner: NodeProcess) -> None:

@@ -1,12 +1,21 @@
 """Where a path is blocked on a newer map."""
 
+from dataclasses import replace
 import math
+from pathlib import Path
+import re
 from test.server.test_requests import GOAL, rooms, store
 import time
 
-from hnr_planner.server.path_validity import first_blocked_pose
+from hnr_planner.maps import load_map
+from hnr_planner.server.map_store import MapStore
+from hnr_planner.server.path_validity import first_blocked_pose, judge_path
+from hnr_planner.server.settings import DEFAULTS
 import numpy as np
 import pytest
+import yaml
+
+ROOT = Path(__file__).parents[2]
 
 #: Seconds: far less than a loop in Python would take.
 SLACK = 5.0
@@ -46,3 +55,17 @@ def test_long_path_is_held_against_a_map_at_once() -> None:
     path[-1] = GOAL
     assert first_blocked_pose(path, 'map', newest) is not None
     assert time.thread_time() - began < SLACK
+
+
+@pytest.mark.parametrize('radius', [0.0, 0.22])
+def test_example_of_the_page_is_valid_on_its_map(radius: float) -> None:
+    page = (ROOT / 'msg_docs' / 'is_path_valid.md').read_text()
+    (example,) = re.findall(r'ros2 service call /is_path_valid \S+ "(.*)"', page)
+    path = yaml.safe_load(example)['path']
+    positions = [pose['pose']['position'] for pose in path['poses']]
+    points = np.array([(position['x'], position['y']) for position in positions])
+    (file,) = re.findall(r'`(config/maps/\S+)`', page)
+    occupancy = load_map(ROOT / file)
+    maps = MapStore(replace(DEFAULTS, robot_radius=radius))
+    snapshot = maps.receive(lambda: occupancy)
+    assert judge_path(points, path['header']['frame_id'], snapshot, None) == ([], '')

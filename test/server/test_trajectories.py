@@ -3,7 +3,6 @@
 from test.brute_force import path_collisions
 
 from hnr_planner.core import GridSpace
-from hnr_planner.core.checks import Floats
 from hnr_planner.core.systems import DoubleIntegrator, Trajectory
 from hnr_planner.server.outcomes import Outcome, Refusal
 from hnr_planner.server.poses import MOST_POSES
@@ -26,7 +25,7 @@ def zigzag(n_steps: int) -> Trajectory:
     states = [np.array([0.15, 1.0, 0.5, -0.25])]
     for control in controls:
         states.append(system.propagate(states[-1], control, 0.5))
-    times: Floats = 0.5 * np.arange(n_steps + 1)
+    times = np.linspace(0.0, 0.5 * n_steps, n_steps + 1)
     return Trajectory(system, times, np.array(states, dtype=np.float64), controls)
 
 

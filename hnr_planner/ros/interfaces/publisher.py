@@ -80,7 +80,7 @@ class Publisher:
             self._wake.put(True)
 
     def announce(self, response: PlanResponse, caller: str) -> None:
-        """Publish an outcome that no request asked for."""
+        """Publish an outcome that belongs to no request."""
         name = f'{self._name}/{caller}'
         with self._in_order:
             self._outcome.publish(outcome_message(response, name, self._stamps.later()))

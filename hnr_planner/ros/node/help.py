@@ -3,6 +3,8 @@
 from collections.abc import Iterable
 import textwrap
 
+from hnr_planner.core.planning.registry import PLANNERS
+from hnr_planner.core.trajectories.registry import KINODYNAMIC_ENTRIES
 from hnr_planner.server.rules import Rule
 from hnr_planner.server.settings import DEFAULTS, RULES
 
@@ -20,16 +22,22 @@ Plan paths on an occupancy map: subscribe to the topic map, serve requests, publ
 services (nav_msgs/srv/GetPlan): {services}
 other services: ~/sample, ~/cancel; topics: ~/path, ~/samples, ~/markers, ~/outcome
 
+algorithms:
+{algorithms}
+
 parameters, with unit and default:
 """
 
 
 def help_text(services: Iterable[str]) -> str:
-    """Return usage, services and the table of parameters as text."""
+    """Return usage, services, algorithms and the table of parameters as text."""
     names = ', '.join(f'~/{name}' for name in services)
+    algorithms = '\n'.join(
+        f'  {entry.name}: {entry.summary}' for entry in (*PLANNERS, *KINODYNAMIC_ENTRIES)
+    )
     usage = '\n'.join(
         textwrap.fill(line, WIDTH, subsequent_indent='  ') if len(line) > WIDTH else line
-        for line in USAGE.format(services=names).splitlines()
+        for line in USAGE.format(services=names, algorithms=algorithms).splitlines()
     )
     return '\n'.join([usage, *(_entry(name, rule) for name, rule in RULES.items())])
 
