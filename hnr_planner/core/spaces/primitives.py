@@ -121,23 +121,11 @@ def contains_around(space, x, slack):
 
 
 @kernel
-def part_of(space, x):
-    """Return the number of the connected part that holds ``x``: ``component`` for Python."""
-    return component(space, x)
-
-
-@kernel
 def chord(space, x, u):
     """Return the ends of the largest free interval of ``x + s u`` around ``s = 0``."""
     if not contains(space, x):
         return 0.0, 0.0
     return around(space, x, u, -u)
-
-
-@kernel
-def sees_from(space, a, b):
-    """Say whether the closed segment from ``a`` to ``b`` is free, for Python."""
-    return segment_is_free(space, a, b)
 
 
 @kernel

@@ -14,7 +14,7 @@ from hnr_planner.core.spaces.grid.fields import components, free_distance, infla
 from hnr_planner.core.spaces.grid.frame import GridFrame
 from hnr_planner.core.spaces.grid.lattice import build_lattice, Lattice, rough_path
 from hnr_planner.core.spaces.grid.traversal import GridData
-from hnr_planner.core.spaces.primitives import part_of
+from hnr_planner.core.spaces.primitives import component
 from hnr_planner.core.spaces.space import Space
 from hnr_planner.core.spaces.transformed import PlacedData
 import numpy as np
@@ -334,7 +334,7 @@ class GridSpace(Space):
 
     def _part(self, point: Floats) -> int:
         """Part of free space that holds a point (2,) [m]: 0 where it is not free."""
-        return int(part_of(self.data, self.frame.to_kernel(point)))
+        return int(component(self.data, self.frame.to_kernel(point)))
 
     # -- how far the walls are -------------------------------------------------------------------
 
