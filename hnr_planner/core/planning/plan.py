@@ -74,7 +74,7 @@ def plan(
     goal_radius : float
         Above 0 the path ends within this distance [m] of the goal (the paper's goal region): at
         the first sample there, or where a tree that grew from the goal began. At 0 it ends exactly
-        at the goal, as soon as a sample sees it.
+        at the goal, as soon as the segment to it is free.
     time_limit : float
         Seconds for the whole call, inf for no limit. Compilation does not count.
     max_iterations : int, optional
@@ -88,8 +88,8 @@ def plan(
         passed in their middle. 0 for the shortest path. It needs ``simplify`` and a space that
         measures the distance to its walls.
     optimize_for : float
-        For so many seconds of the call, within the time limit, a shorter path is looked for again
-        and again; a straight one ends it.
+        Seconds of the call, within the time limit, in which further searches look for a shorter
+        path; a straight one ends that.
     optimize_iterations : int
         How many more searches to run for a shorter path; together with ``optimize_for`` whichever
         ends first.

@@ -1,5 +1,5 @@
 """
-What a planner is: a value that starts searches, which advance by counts and know no clock.
+Protocols of planners and searches: planners start searches, which advance by counts, not clocks.
 
 A planner is a frozen dataclass whose fields are its settings. Its ``start`` gives a search, whose
 ``advance(n)`` handles at most ``n`` further transitions. Batches may be of any size: the same
@@ -17,7 +17,7 @@ from hnr_planner.core.spaces.space import Space
 import numpy as np
 from numpy.typing import NDArray
 
-#: How many times longer a table becomes when it is full.
+#: Factor by which a table grows when it is full.
 GROWTH = 8
 
 
@@ -73,7 +73,7 @@ def make_problem(space: Space, start: Floats, goal: Floats, goal_radius: float) 
 
 @kernel
 def reaches_goal(problem, x):
-    """Say whether a sample ends the search: it lies in the region, or it sees an exact goal."""
+    """Return whether ``x`` (dim,) ends a search: in the region, or with an exact goal visible."""
     if problem.goal_radius == 0.0:
         return segment_is_free(problem.space, x, problem.goal)
     squared = 0.0
@@ -87,11 +87,11 @@ class Search(Protocol):
 
     @property
     def iterations(self) -> int:
-        """Transitions handled: proposals drawn from the space, whatever became of them."""
+        """Transitions handled: proposals drawn from the space, accepted or not."""
 
     @property
     def solved(self) -> bool:
-        """Whether what it searches for is known."""
+        """Whether the search is over: its path is found."""
 
     @property
     def samples(self) -> Floats:
@@ -103,7 +103,7 @@ class Search(Protocol):
 
     @property
     def counts(self) -> dict[str, int]:
-        """What else was counted, by name."""
+        """Further counts by name."""
 
     def advance(self, n_iterations: int) -> None:
         """Handle at most ``n_iterations`` further transitions, fewer once solved."""
@@ -136,7 +136,7 @@ class PathSearch(Search, Protocol):
 
     @property
     def taut(self) -> bool:
-        """Whether the path of a solved search is as short as pulling could make it."""
+        """Whether pulling the path of a solved search taut gains nothing."""
 
 
 class Planner(Protocol):
@@ -144,7 +144,7 @@ class Planner(Protocol):
 
     @property
     def name(self) -> str:
-        """Name in ``plan``'s table of algorithms."""
+        """Name that results state."""
 
     def start(self, problem: Problem, rng: Stream) -> PathSearch:
         """Start a search."""
@@ -171,8 +171,8 @@ def with_room(array: NDArray[Any], rows: int) -> NDArray[Any]:
     """
     Return ``array``, or a copy several times as long when it has fewer than ``rows``.
 
-    Copies are what a clock would have to wait for, so they are rare; room that is not used yet
-    takes no memory.
+    A clock is not checked during a copy, so copies are rare; rows that are not used yet take no
+    memory.
     """
     if len(array) >= rows:
         return array

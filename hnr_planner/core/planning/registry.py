@@ -55,7 +55,7 @@ PLANNERS = (
         'hit_and_run',
         f'{_PLANNERS}.hit_and_run',
         'HitAndRun',
-        "the paper's Hit-and-Run: one chain of steps from the start until it sees the goal",
+        "the paper's Hit-and-Run: a chain of steps from the start to where the goal is visible",
     ),
     PlannerEntry(
         'rrt',
@@ -67,7 +67,7 @@ PLANNERS = (
         'hit_and_run_connect',
         f'{_PLANNERS}.hit_and_run_connect',
         'HitAndRunConnect',
-        'trees of Hit-and-Run steps from both ends, joined as soon as they see each other',
+        'trees of Hit-and-Run steps from both ends, joined by the first free segment between them',
     ),
     PlannerEntry(
         'rrt_connect',

@@ -1,12 +1,12 @@
 """
-Ways to shorten a path by visibility, as kernels: each only ever shortens, and counts its tests.
+Kernels that shorten a path by visibility: each only ever shortens, and counts its tests.
 
-``skip``: a vertex is followed by the last one that it sees. ``join``: random points of the path
+``skip``: a vertex is followed by the last one visible from it. ``join``: random points of the path
 are joined. ``pull``: each vertex slides along its two segments until an obstacle is in the way,
-and what corner is left there is cut off, so that the path comes to lie taut around obstacles.
+and the corner left there is cut off, so that the path comes to lie taut around obstacles.
 
-With ``islands`` the path stays in its homology class: nothing is replaced by what passes one of
-them on the other side.
+With ``islands`` the path stays in its homology class: no segment is replaced by one that passes an
+island on the other side.
 """
 
 from hnr_planner.core.kernels.borrowed import borrowed
@@ -17,29 +17,29 @@ from hnr_planner.core.planning.homology import crossings, loop_signature, signat
 from hnr_planner.core.spaces.primitives import segment_is_free
 import numpy as np
 
-#: Looks from one vertex, each halfway to the one before, at most.
-LOOKS_MAX = 64
-#: Halvings of the way on which a vertex slides or its corner is cut.
+#: Largest number of tests from one vertex, each halfway to the one before.
+TESTS_PER_VERTEX_MAX = 64
+#: Halvings of the segment on which a vertex slides or its corner is cut.
 HALVINGS = 12
-#: A corner is cut for a gain of more than this part of its two segments.
+#: Least gain for which a corner is cut, as a fraction of its two segments.
 LEAST_CUT = 1e-3
 
 
 @kernel
 def skip(space, islands, points, kept, n_kept, every, tests_max):
     """
-    Go on from the last vertex kept to the last one that it sees, and so on.
+    Extend the list of kept vertices: each is followed by the last one visible from it.
 
-    A vertex looks at ``every`` one after it, the last one first, or only at the last one, the one
-    halfway there, halfway to that, ...; with too few tests left for all of them it does not begin.
-    Returns (vertices kept, tests).
+    From a vertex ``every`` later one is tested, the last first, or only the last one, the one
+    halfway there, halfway to that, and so on; with too few tests left for all of them it does not
+    begin. Returns (vertices kept, tests).
     """
     space, points = borrowed(space), borrowed(points)
     last, tests = len(points) - 1, 0
     while kept[n_kept - 1] < last:
         at = kept[n_kept - 1]
         ahead = last - at
-        if tests + (ahead if every else LOOKS_MAX) > tests_max:
+        if tests + (ahead if every else TESTS_PER_VERTEX_MAX) > tests_max:
             break
         while ahead > 1:
             tests += 1
@@ -53,7 +53,7 @@ def skip(space, islands, points, kept, n_kept, every, tests_max):
 
 @kernel
 def _may_join(space, islands, points, i, j):
-    """Say whether vertices ``i`` and ``j`` of a path see each other, on its side of islands."""
+    """Return whether vertices ``i`` and ``j`` may be joined, on the path's side of islands."""
     if not segment_is_free(space, points[i], points[j]):
         return False
     after = j + 1
@@ -62,7 +62,7 @@ def _may_join(space, islands, points, i, j):
 
 @kernel
 def join(space, islands, points, rng, n_pairs):
-    """Try to join random pairs of points of the path directly, by three tests each: the path."""
+    """Try to join random pairs of points of the path, by three tests each; return the path."""
     space, islands, rng = borrowed(space), borrowed(islands), borrowed(rng)
     for _ in range(n_pairs):
         points = _join_two(space, islands, points, rng)
@@ -71,7 +71,7 @@ def join(space, islands, points, rng, n_pairs):
 
 @kernel
 def pull(space, islands, points, k, margin, tests_max):
-    """Slide and cut the vertices from ``k`` on: (path, vertex to go on from, tests)."""
+    """Slide and cut the vertices from ``k`` on; return (path, vertex to go on from, tests)."""
     space, islands = borrowed(space), borrowed(islands)
     tests = 0
     while k < len(points) - 1 and tests + 1 + 3 * HALVINGS <= tests_max:
@@ -90,7 +90,7 @@ def pull(space, islands, points, k, margin, tests_max):
 
 @kernel
 def _slide(space, islands, a, x, b, margin):
-    """Slide ``x`` towards ``a`` to ``margin`` before it would lose sight of ``b``."""
+    """Slide ``x`` towards ``a`` to ``margin`` before the segment to ``b`` is blocked."""
     free, blocked = 0.0, 1.0
     for _ in range(HALVINGS):
         middle = (free + blocked) / 2.0
@@ -106,7 +106,7 @@ def _slide(space, islands, a, x, b, margin):
 
 @kernel
 def _cut(space, islands, a, x, b, margin):
-    """Cut off the corner a-x-b as far as the cut is free: its two ends, ``x`` for little gain."""
+    """Cut off the corner a-x-b as far as is free; return the two ends, ``x`` for little gain."""
     free, blocked = 0.0, 1.0
     for _ in range(HALVINGS):
         middle = (free + blocked) / 2.0
@@ -131,14 +131,14 @@ def _cut(space, islands, a, x, b, margin):
 
 @kernel
 def _replaced(points, k, others):
-    """Path with vertex ``k`` replaced by ``others`` (n, dim)."""
+    """Return the path with vertex ``k`` replaced by ``others`` (n, dim)."""
     after = k + 1
     return np.concatenate((points[:k], others, points[after:]))
 
 
 @kernel
 def _join_two(space, islands, points, rng):
-    """Try to join two random points of the path, uniform along its length, directly."""
+    """Try to join two random points, uniform along the length of the path; return the path."""
     along = _lengths_along(points)
     s, t = along[-1] * uniform(rng), along[-1] * uniform(rng)
     i, j = _segment_at(along, min(s, t)), _segment_at(along, max(s, t))
@@ -158,7 +158,7 @@ def _join_two(space, islands, points, rng):
 
 @kernel
 def _lengths_along(points):
-    """Length of the path up to each of its vertices (m,)."""
+    """Return the length of the path up to each of its vertices (m,)."""
     along = np.zeros(len(points))
     for k in range(1, len(points)):
         along[k] = along[k - 1] + norm(points[k] - points[k - 1])
@@ -167,7 +167,7 @@ def _lengths_along(points):
 
 @kernel
 def _segment_at(along, s):
-    """Index of the segment that holds the point at length ``s``."""
+    """Return the index of the segment that holds the point at length ``s``."""
     k = 0
     while k < len(along) - 2 and along[k + 1] <= s:
         k += 1
@@ -176,7 +176,7 @@ def _segment_at(along, s):
 
 @kernel
 def _point_on(points, along, k, s):
-    """Point at length ``s`` on segment ``k``."""
+    """Return the point (dim,) at length ``s`` on segment ``k``."""
     length = along[k + 1] - along[k]
     fraction = (s - along[k]) / length if length > 0.0 else 0.0
     return points[k] + fraction * (points[k + 1] - points[k])
@@ -184,7 +184,7 @@ def _point_on(points, along, k, s):
 
 @kernel
 def _joined(points, i, a, b, j):
-    """Path with everything between vertices ``i`` and ``j`` replaced by the segment a-b."""
+    """Return the path with all between vertices ``i`` and ``j`` replaced by the segment a-b."""
     kept = i + 1
     shorter = np.empty((kept + 2 + len(points) - j, points.shape[1]))
     shorter[:kept] = points[:kept]
