@@ -13,7 +13,6 @@ import math
 from pathlib import Path
 import re
 import sys
-import threading
 from typing import Any, NoReturn, Protocol, TYPE_CHECKING, TypeVar
 
 if TYPE_CHECKING:
@@ -29,8 +28,6 @@ PAGES = ('.html', '.htm')
 PICTURES = ('.png', '.svg', '.pdf')
 #: Names of number types, for messages.
 KINDS = {float: 'number', int: 'whole number'}
-#: Time that loading the kernels may take before a note explains the wait [s].
-PATIENCE = 2.0
 
 
 class Listed(Protocol):
@@ -273,17 +270,3 @@ def keep_map_files(map_file: str | Path, *outputs: Path | None) -> None:
         for file in inputs:
             if output.exists() and file.exists() and output.samefile(file):
                 raise BadInputError(f'{output} belongs to the map {map_file}: choose another name')
-
-
-def compile_kernels(use: str) -> None:
-    """Load or compile the kernels for a use before anything is timed; explain a long wait."""
-    from hnr_planner.core import warm_up
-
-    note = 'loading compiled code; the first time it is compiled, which takes minutes ...'
-    timer = threading.Timer(PATIENCE, print, [note], {'file': sys.stderr, 'flush': True})
-    timer.daemon = True
-    timer.start()
-    try:
-        warm_up(use)
-    finally:
-        timer.cancel()

@@ -10,7 +10,6 @@ from typing import Any, TYPE_CHECKING
 from hnr_planner.cli.arguments import (
     add_command,
     add_map_arguments,
-    compile_kernels,
     count,
     keep_map_files,
     length,
@@ -152,7 +151,6 @@ def run(arguments: argparse.Namespace) -> int:
             require_extra('plot', option)
     occupancy, space = open_map(arguments)
     keep_map_files(arguments.map, arguments.plot, arguments.html)
-    compile_kernels('paths')
     request = _request(arguments)
     result = plan(space, **request)
     print(_json(result) if arguments.json else _summary(space, result))

@@ -12,7 +12,6 @@ from hnr_planner.cli.arguments import (
     add_command,
     add_map_arguments,
     BadInputError,
-    compile_kernels,
     count,
     keep_map_files,
     open_map,
@@ -123,7 +122,6 @@ def run(arguments: argparse.Namespace) -> int:
     occupancy, space = open_map(arguments)
     keep_map_files(arguments.map, arguments.csv, arguments.plot)
     seed = secrets.randbelow(2**31) if arguments.seed is None else arguments.seed
-    compile_kernels('samples')
     chains = _draw(arguments, space, seed)
     if arguments.diagnose:
         print(diagnose(chains).message, file=sys.stderr)

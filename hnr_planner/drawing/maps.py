@@ -108,8 +108,9 @@ def _image(kinds: NDArray[np.uint8]) -> tuple[NDArray[np.uint8], int]:
         rows = np.arange(0, len(strip), block)
         total = np.zeros((len(rows), len(columns), 4))
         for kind, colour in enumerate(colours):
-            is_kind = (strip == kind).astype(np.uint32)
-            counts = np.add.reduceat(np.add.reduceat(is_kind, rows, axis=0), columns, axis=1)
+            is_kind = (strip == kind).view(np.uint8)
+            counts = np.add.reduceat(is_kind, rows, axis=0, dtype=np.uint32)
+            counts = np.add.reduceat(counts, columns, axis=1)
             total += counts[..., np.newaxis] * colour.astype(float)
         strips.append(np.round(255 * total / total[..., 3:]).astype(np.uint8))
     return np.concatenate(strips), block

@@ -117,8 +117,9 @@ def test_a_map_of_which_nothing_is_known_can_be_drawn(tmp_path: Path) -> None:
 def test_cells_of_a_large_map_are_drawn_where_they_are(shape: tuple[int, int]) -> None:
     data = np.zeros(shape, dtype=np.int8)
     rows, cols = shape
+    upper = 2 * rows // 3
     data[: rows // 3, : cols // 2] = 100
-    data[2 * (rows // 3) :, : cols // 2] = -1
+    data[upper:, : cols // 2] = -1
     occupancy = OccupancyMap(data, 0.05, (1.0, 2.0, 0.0))
     figure = Figure(figsize=(6, 6))
     axes = figure.subplots()

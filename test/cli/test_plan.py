@@ -49,7 +49,9 @@ def test_help_names_what_the_core_has(run: Run) -> None:
         assert f'  {entry.name} ' in text and entry.summary in text
 
 
-@pytest.mark.parametrize('command', [[], ['plan'], ['sample'], ['demo'], ['experiment']])
+@pytest.mark.parametrize(
+    'command', [[], ['plan'], ['sample'], ['demo'], ['experiment'], ['compile']]
+)
 def test_help_imports_nothing_heavy(command: list[str]) -> None:
     program = (
         'import sys; from hnr_planner.cli.main import main; '

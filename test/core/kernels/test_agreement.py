@@ -39,12 +39,11 @@ def test_both_tiers_agree_on_every_call(workload: str, called: set[str]):
 
 NEEDED = """
 import sys
-from hnr_planner.core import warm_up
 from hnr_planner.core.kernels.kernel import calls_of
 from hnr_planner.core.kernels.modes import Mode
+from hnr_planner.core.warming import USES
 
-uses = sys.modules['hnr_planner.core.warm_up'].USES
-for use in uses.values():
+for use in USES.values():
     calls = calls_of(use.run, Mode(sys.argv[1]))
 for kernel, signature in calls:
     print('NEEDS', kernel.__module__, kernel.__qualname__, *map(str, signature))

@@ -1,0 +1,93 @@
+"""The command ``compile``: all machine code now, for installers and images."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+import sys
+from tempfile import gettempdir
+import time
+
+from hnr_planner.cli.arguments import add_command, BadInputError
+
+#: Time between two lines of progress where it goes to a file [s].
+INTERVAL = 10.0
+EPILOG = """\
+example:
+  %(prog)s
+
+Without it nothing waits either: requests run interpreted until a background process has compiled
+what they need, and later starts load it. With it the first requests are as fast as all others.
+The machine code lies in the user's cache folder (~/.cache/hnr_planner), or where NUMBA_CACHE_DIR
+or XDG_CACHE_HOME point. It is valid for this machine's kind of processor and for this version:
+compile on the robot, or in an image that runs on the same kind of processor.
+
+Exit code 0: everything is compiled. 2: nothing can be kept, or compilation is switched off.
+"""
+
+
+def add_parser(commands: argparse._SubParsersAction) -> None:
+    """Add the command ``compile`` to the command line."""
+    add_command(
+        commands,
+        'compile',
+        run,
+        summary='compile all machine code now, for installers and images',
+        description='Compile everything that plans and samples on maps need, and keep it.',
+        epilog=EPILOG,
+    )
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Compile, print the progress, and return the exit code."""
+    from hnr_planner.core.kernels.cache_folder import cache_folder
+    from hnr_planner.core.kernels.modes import Mode, mode
+    from hnr_planner.core.warming import compile_all
+
+    if mode() is Mode.INTERPRETED:
+        raise BadInputError(
+            'compilation is switched off: unset NUMBA_DISABLE_JIT and HNR_PLANNER_KERNELS'
+        )
+    began = time.monotonic()
+    folder = cache_folder()
+    if _is_temporary(folder):
+        raise BadInputError(
+            'the cache folder cannot be written, so nothing would be kept: set NUMBA_CACHE_DIR to '
+            'a folder that can'
+        )
+    print(f'compiling into {folder}', flush=True)
+    progress = Progress()
+    n_compiled = compile_all(progress=progress.show)
+    progress.end()
+    seconds = time.monotonic() - began
+    print(f'{progress.n_total} kernels ready, {n_compiled} of them compiled now, {seconds:.0f} s')
+    return 0
+
+
+def _is_temporary(folder: Path) -> bool:
+    """Return whether a cache folder is the temporary one of this process."""
+    home = folder.parents[1]
+    return home.parent == Path(gettempdir()) and home.name.startswith('hnr_planner_')
+
+
+class Progress:
+    """Progress on stdout: one line that is overwritten, or in a file a line now and then."""
+
+    def __init__(self) -> None:
+        self.n_total = 0
+        self._is_terminal = sys.stdout.isatty()
+        self._shown = time.monotonic()
+
+    def show(self, n_done: int, n_total: int, name: str) -> None:
+        """Show how many kernels are done, and the name of the last one."""
+        self.n_total = n_total
+        if self._is_terminal:
+            print(f'\r\033[K{n_done} of {n_total}  {name}', end='', flush=True)
+        elif time.monotonic() - self._shown >= INTERVAL:
+            self._shown = time.monotonic()
+            print(f'{n_done} of {n_total}', flush=True)
+
+    def end(self) -> None:
+        """Remove the line that is overwritten."""
+        if self._is_terminal:
+            print('\r\033[K', end='', flush=True)

@@ -1,0 +1,35 @@
+"""The command ``compile``."""
+
+from collections.abc import Callable
+from pathlib import Path
+import re
+from test.cli.conftest import Ran, run_process
+
+import pytest
+
+
+@pytest.mark.usefixtures('compiled')
+def test_it_compiles_what_is_missing_and_says_how_much(run: Callable[..., Ran]) -> None:
+    ran = run('compile')
+    assert ran.code == 0
+    first, *_, last = ran.out.splitlines()
+    assert Path(first.removeprefix('compiling into ')).is_dir()
+    ready = re.fullmatch(r'(\d+) kernels ready, (\d+) of them compiled now, \d+ s', last)
+    assert ready is not None and int(ready[1]) > 50
+    again = run('compile')
+    assert f'{ready[1]} kernels ready, 0 of them compiled now' in again.out
+
+
+def test_a_cache_that_cannot_be_kept_is_an_error(tmp_path: Path) -> None:
+    ran = run_process('compile', NUMBA_CACHE_DIR='/proc/nowhere', TMPDIR=str(tmp_path))
+    assert (ran.code, ran.out) == (2, '')
+    assert 'the cache folder cannot be written' in ran.err.splitlines()[-1]
+
+
+@pytest.mark.parametrize(
+    'switch', [{'NUMBA_DISABLE_JIT': '1'}, {'HNR_PLANNER_KERNELS': 'interpreted'}]
+)
+def test_compilation_that_is_switched_off_is_an_error(switch: dict[str, str]) -> None:
+    ran = run_process('compile', **switch)
+    assert (ran.code, ran.out) == (2, '')
+    assert ran.err.startswith('error: compilation is switched off')
