@@ -3,7 +3,7 @@ Arrays lent to a kernel: used without counting references.
 
 Compiled code counts the references to an array wherever it is handed on, sliced or taken out of a
 tuple, each time with an atomic instruction: for a ray through a grid that is more work than the
-ray. Whoever calls a kernel from Python holds its arguments until it returns, so the count does not
+ray. A caller in Python holds the arguments of a kernel until it returns, so the count does not
 matter there: a kernel that begins with ``space = borrowed(space)`` runs several times faster.
 
 What was borrowed must not be returned, and an array made in the kernel must not be borrowed: its

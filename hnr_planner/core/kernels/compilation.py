@@ -228,16 +228,18 @@ def prepare(workload: Workload) -> None:
 
 
 def _prepare(workload: Workload) -> None:
-    for need in known_needs(workload) or ():
-        kernel, signature = need.resolve()
-        if not kernel.load(signature):
-            break
-    else:
-        if known_needs(workload) is not None:
-            return
+    needs = known_needs(workload)
+    if needs is not None and all(_is_loaded(need) for need in needs):
+        return
     with _background.lock:
         _background.workloads.append(workload)
         _background.ask(workload)
+
+
+def _is_loaded(need: Need) -> bool:
+    """Load machine code if it is in the cache; return whether it is."""
+    kernel, signature = need.resolve()
+    return bool(kernel.load(signature))
 
 
 def status() -> Status:

@@ -37,8 +37,14 @@ import numpy as np
 #: Types of the arguments of a call.
 Signature: TypeAlias = tuple[Any, ...]
 
-#: How numba compiles every kernel: without the GIL, with IEEE arithmetic kept to the bit.
-OPTIONS: dict[str, Any] = {'nopython': True, 'nogil': True, 'error_model': 'numpy'}
+#: How numba compiles every kernel: without the GIL, with IEEE arithmetic kept to the bit, and
+#: without a form that C could call, which nobody does.
+OPTIONS: dict[str, Any] = {
+    'nopython': True,
+    'nogil': True,
+    'error_model': 'numpy',
+    'no_cfunc_wrapper': True,
+}
 #: For a kernel whose code is put in wherever a kernel calls it.
 INLINED: Any = {'forceinline': True}
 
@@ -112,6 +118,11 @@ class Kernel(CPUDispatcher):
     def enable_caching(self) -> None:
         """Keep machine code in the cache folder."""
         self._cache = _Cache(self.py_func)
+
+    def get_call_template(self, args: Any, kws: Any) -> Any:
+        """Type a call by another kernel: numba would compile it anew for each constant."""
+        plain = {name: types.unliteral(kind) for name, kind in kws.items()}
+        return super().get_call_template([types.unliteral(kind) for kind in args], plain)
 
     def load(self, signature: Signature) -> bool:
         """Load machine code from the cache; return whether it is loaded. Never compile."""

@@ -1,5 +1,5 @@
 """
-Random streams: where every draw of a kernel comes from.
+Random streams: the random numbers of kernels.
 
 A stream is four words, the state of xoshiro256++ (Blackman and Vigna, "Scrambled linear
 pseudorandom number generators", 2021), seeded through SplitMix64 as they advise. An array costs
@@ -25,7 +25,7 @@ _WORD = 2**64 - 1
 
 
 def stream(seed: int, *purpose: int) -> Stream:
-    """Return the stream for one purpose, told by whole numbers >= 0, of one ``seed`` >= 0."""
+    """Return the stream of a ``seed`` >= 0 for one purpose, which whole numbers >= 0 name."""
     words = [len(purpose), *purpose, seed & _WORD]
     while seed > _WORD:
         seed >>= 64
@@ -35,7 +35,7 @@ def stream(seed: int, *purpose: int) -> Stream:
 
 @kernel
 def _seeded(words):
-    """Stream told by ``words`` (k,) uint64: they are mixed in, and four words drawn."""
+    """Return the state (4,) of the stream that ``words`` (k,) uint64 name."""
     key = np.uint64(0)
     for word in words:
         key = _mixed((key ^ word) + _GOLDEN)
@@ -48,7 +48,7 @@ def _seeded(words):
 
 @kernel
 def _mixed(z):
-    """Output function of SplitMix64."""
+    """Return the output function of SplitMix64 at ``z``."""
     z = (z ^ (z >> np.uint64(30))) * _MIX_1
     z = (z ^ (z >> np.uint64(27))) * _MIX_2
     return z ^ (z >> np.uint64(31))
@@ -99,6 +99,7 @@ _TAIL, _AREA = 3.6541528853610088, 0.00492867323399
 
 
 def _density(x: float) -> float:
+    """Return the density of the normal distribution, without its factor."""
     return math.exp(-0.5 * x * x)
 
 
@@ -167,4 +168,5 @@ def _advanced(s0, s1, s2, s3):
 
 @inlined
 def _rotated(word, by):
+    """Return 64 bits rotated to the left."""
     return (word << np.uint64(by)) | (word >> np.uint64(64 - by))
