@@ -132,11 +132,6 @@ def flood_path(
     return np.empty((0, len(start)))
 
 
-def kind_of(space: CompiledSpace) -> tuple[Any, ...]:
-    """Return what machine code depends on: the types of a compiled space and of nested ones."""
-    return (type(space), *(kind_of(field) for field in space if contains.knows(field)))
-
-
 @kernel
 def are_free(space, points):
     """Return which of ``points`` (k, dim) are free: (k,) bool."""

@@ -23,7 +23,6 @@ from hnr_planner.core import (
     Space,
     UnionSpace,
 )
-from hnr_planner.core.spaces.primitives import kind_of
 from numba import njit
 import numpy as np
 from numpy.typing import NDArray
@@ -316,11 +315,3 @@ def test_what_a_space_cannot_tell_is_refused():
         plan(space, start, goal, clearance=0.1)
     with pytest.raises(RequestError, match='must have dimension 2, this DifferenceSpace has 3'):
         Roadmap.build(space)
-
-
-def test_spaces_of_other_parts_are_of_another_kind():
-    """Else the second would be compiled while a request waits for it."""
-    one, other = SCENES['balls, 2-D']().space, SCENES['tables']().space
-    assert type(one.data) is type(other.data)
-    assert kind_of(one.data) != kind_of(other.data)
-    assert kind_of(one.data) == kind_of(SCENES['balls, 6-D']().space.data)

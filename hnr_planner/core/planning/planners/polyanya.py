@@ -70,7 +70,9 @@ class Polyanya:
         return replace(self, slabs=space.slabs)
 
     def start(self, problem: Problem, rng: Stream) -> 'PolyanyaSearch':
-        """Start at the problem's start."""
+        """Start at the problem's start; RequestError for a planner without slabs."""
+        if self.slabs is None:
+            raise RequestError('Polyanya has no slabs yet: plan puts in those of its space')
         return PolyanyaSearch(problem, self.slabs)
 
 
