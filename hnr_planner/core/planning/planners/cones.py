@@ -117,12 +117,9 @@ def expand(slabs, frontier, goal, goal_slab, n_iterations):
     slabs, frontier, goal = borrowed(slabs), borrowed(frontier), borrowed(goal)
     sizes, nodes, vertices = frontier.sizes, frontier.nodes, frontier.vertices
     for i in range(n_iterations):
-        if sizes[N_OPEN] == 0 or sizes[FINAL] != NONE:
+        if _is_over(frontier):
             return i
         row = frontier.heap[0]
-        if row <= NONE:
-            sizes[FINAL] = NONE - row
-            return i
         portal, up = int(nodes[row, PORTAL]), int(nodes[row, UP])
         slab = slabs.portals[portal, 4] if up == 1 else slabs.portals[portal, 3]
         ahead = slabs.above if up == 1 else slabs.below
@@ -141,7 +138,17 @@ def expand(slabs, frontier, goal, goal_slab, n_iterations):
             _expand_ahead(slabs, frontier, goal, row, ahead[slab, 0], ahead[slab, 1])
         for side in (LEFT, RIGHT):
             _expand_around(slabs, frontier, goal, row, side, slab, slab == goal_slab)
+    _is_over(frontier)
     return n_iterations
+
+
+@kernel
+def _is_over(frontier):
+    """Return whether no node is left to expand; note the goal where it comes first."""
+    sizes = frontier.sizes
+    if sizes[N_OPEN] > 0 and frontier.heap[0] <= NONE:
+        sizes[FINAL] = NONE - frontier.heap[0]
+    return sizes[N_OPEN] == 0 or sizes[FINAL] != NONE
 
 
 @kernel
