@@ -3,7 +3,7 @@
 import math
 import operator
 import secrets
-from typing import Any
+from typing import Any, TypeAlias
 
 from hnr_planner.core.errors import HnrError, RequestError
 import numpy as np
@@ -11,6 +11,10 @@ from numpy.typing import ArrayLike, NDArray
 
 Floats = NDArray[np.float64]
 
+#: What is taken as a seed: ``check_seed`` makes a whole number of it.
+Seed: TypeAlias = (
+    int | np.integer[Any] | np.random.SeedSequence | np.random.Generator | np.random.BitGenerator
+) | None
 #: Seeds drawn from a generator or a seed sequence are below this.
 SEED_MAX = 2**63
 
@@ -101,7 +105,7 @@ def check_choice(name: str, value: Any, choices: tuple[str, ...]) -> str:
     return str(value)
 
 
-def check_seed(seed: Any) -> int:
+def check_seed(seed: Seed) -> int:
     """
     Return a seed as an int of at least 0, which results name and which repeats them.
 
