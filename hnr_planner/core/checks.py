@@ -1,4 +1,4 @@
-"""Checks at the door: they turn input into clean numbers once, or say the value and the rule."""
+"""Checks of arguments: convert them once, or raise an error with the value and the rule."""
 
 import math
 import operator
@@ -12,6 +12,9 @@ from numpy.typing import ArrayLike, NDArray
 Floats = NDArray[np.float64]
 #: What ``check_seed`` accepts.
 Seed = int | np.random.SeedSequence | np.random.Generator | np.random.BitGenerator | None
+
+#: Seeds drawn from a generator or a seed sequence are below this.
+SEED_MAX = 2**63
 
 
 def check_numbers(name: str, values: ArrayLike, error: type[HnrError] = RequestError) -> Floats:
@@ -59,7 +62,7 @@ def check_direction(name: str, direction: ArrayLike, dim: int) -> Floats:
 
 
 def check_real(name: str, value: Any, error: type[HnrError] = RequestError) -> float:
-    """Return ``value`` as a float, whichever, or raise ``error``."""
+    """Return ``value`` as a float, nan and inf included, or raise ``error``."""
     try:
         return float(value)
     except (TypeError, ValueError, OverflowError):
@@ -101,5 +104,27 @@ def check_choice(name: str, value: Any, choices: tuple[str, ...]) -> str:
 
 
 def check_seed(seed: Seed) -> int:
-    """Return ``seed`` as an int of at least 0, a fresh one for None, or raise RequestError."""
-    return secrets.randbelow(2**31) if seed is None else check_count('seed', seed, 0)
+    """
+    Return a seed as an int of at least 0, which results name and which repeats them.
+
+    Parameters
+    ----------
+    seed : int, numpy.random.SeedSequence, numpy.random.Generator or None
+        A seed sequence always gives the same int, from its state. A generator (or a bit generator)
+        gives its next one, and is advanced by that. None gives a fresh one.
+
+    Raises
+    ------
+    RequestError
+        When it is none of these, or below 0.
+
+    """
+    if seed is None:
+        return secrets.randbelow(2**31)
+    if isinstance(seed, np.random.BitGenerator):
+        seed = np.random.Generator(seed)
+    if isinstance(seed, np.random.Generator):
+        return int(seed.integers(SEED_MAX))
+    if isinstance(seed, np.random.SeedSequence):
+        return int(seed.generate_state(1, np.uint64)[0]) % SEED_MAX
+    return check_count('seed', seed, 0)

@@ -17,5 +17,9 @@ class Cancelled(HnrError):
     """Work that has no answer without its end was cancelled."""
 
 
+class Interrupted(HnrError):
+    """A kernel that ran interpreted ended early: its time is over, or it was cancelled."""
+
+
 class StuckError(HnrError, RuntimeError):
     """A chain of a random walk does not move any more."""

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import cv2
 from hnr_planner.core import GridSpace
-from hnr_planner.core.spaces.primitives import part_of
+from hnr_planner.core.spaces.primitives import component
 from hnr_planner.server.map_store import MapSnapshot
 import numpy as np
 from numpy.typing import NDArray
@@ -48,7 +48,7 @@ def escape_point(
     surroundings = _Surroundings.cut(snapshot, here, radius / space.resolution)
     exits = surroundings.exits(space.margin)
     lengths = np.hypot(*(exits.points - surroundings.here).T)
-    elsewhere = exits.parts != part_of(space.data, space.to_kernel(np.array(goal)))
+    elsewhere = exits.parts != component(space.data, space.to_kernel(np.array(goal)))
     if surroundings.in_obstacle:
         elsewhere[:] = False
     order = np.lexsort([lengths, elsewhere])

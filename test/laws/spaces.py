@@ -110,6 +110,19 @@ def _nested() -> DifferenceSpace:
     return DifferenceSpace(BoxSpace((0.0, 0.0), (5.0, 4.0)), DifferenceSpace(shell, hall))
 
 
+#: A corner in the coordinates of a map projection [m], which are rounded to 1e-9 there.
+FAR = np.array([691_000.3, 5_334_000.7])
+
+
+def _far_rooms() -> UnionSpace:
+    """Return half a metre of rooms of three kinds far from the origin."""
+    return UnionSpace(
+        BoxSpace(FAR, FAR + (0.3, 0.5)),
+        BallSpace(FAR + (0.35, 0.2), 0.15),
+        PolygonSpace(shapely.box(*(FAR + (0.2, 0.3)), *(FAR + (0.6, 0.4)))),
+    )
+
+
 SPACES: dict[str, Callable[[], object]] = {
     'grid in cells': lambda: GridSpace.from_blocked(maps.TWO_ROOMS),
     'grid in metres': lambda: GridSpace.from_blocked(maps.U_SHAPE, 0.05, SHIFTED),
@@ -155,6 +168,13 @@ SPACES: dict[str, Callable[[], object]] = {
     'grid and box': _grid_with_a_room_beside,
     'difference in a difference': _nested,
     'grid without polygons': _hall_with_tables,
+    'polytope far away': lambda: PolytopeSpace(
+        [[-1.0, 0.0], [0.0, -1.0], [1.0, 2.0]], [-FAR[0], -FAR[1], FAR @ (1, 2) + 0.5]
+    ),
+    'rooms far away': _far_rooms,
+    'oracle far away': lambda: OracleSpace(
+        lambda x: bool(0.3 < np.hypot(*(x - FAR)) < 1.0), FAR - 1.1, FAR + 1.1, resolution=2e-3
+    ),
     'product': lambda: ProductSpace(
         GridSpace.from_blocked(maps.TWO_ROOMS, 0.1), BallSpace([0.0], 2)
     ),

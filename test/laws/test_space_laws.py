@@ -5,6 +5,9 @@ Points and directions are drawn at random: lines that touch a corner exactly hav
 zero here, and tests of their own where a space has corners.
 """
 
+import copy
+import pickle
+
 import numpy as np
 import pytest
 
@@ -16,6 +19,16 @@ def size(space):
     """Return the diagonal of the bounds: the scale of every tolerance."""
     lower, upper = space.bounds
     return float(np.linalg.norm(upper - lower))
+
+
+def rounding(space):
+    """Return the spacing of floating-point numbers at the far end of the space."""
+    return float(np.spacing(np.abs(space.bounds).max()))
+
+
+def tolerance(space):
+    """Return the distance to the boundary from which points are judged: the contract's margin."""
+    return max(1e-9 * size(space), 8.0 * rounding(space))
 
 
 def random_points(space, rng, n=N):
@@ -72,7 +85,7 @@ def test_points_inside_a_chord_are_free(space, rng):
 def test_points_just_beyond_the_ends_of_a_chord_are_not_free(space, rng):
     for point, direction in random_lines(space, rng):
         lower, upper = space.chord(point, direction)
-        beyond = 1e-9 * size(space) / np.linalg.norm(direction)
+        beyond = tolerance(space) / np.linalg.norm(direction)
         assert not space.contains(point + (upper + beyond) * direction)
         assert not space.contains(point + (lower - beyond) * direction)
 
@@ -82,9 +95,9 @@ def test_chord_is_the_same_from_everywhere_along_it(space, rng):
         lower, upper = space.chord(point, direction)
         shift = lower + rng.uniform(0.01, 0.99) * (upper - lower)
         moved = space.chord(point + shift * direction, direction)
-        tolerance = 1e-9 * size(space) / np.linalg.norm(direction)
-        assert moved.lower + shift == pytest.approx(lower, abs=tolerance)
-        assert moved.upper + shift == pytest.approx(upper, abs=tolerance)
+        error = tolerance(space) / np.linalg.norm(direction)
+        assert moved.lower + shift == pytest.approx(lower, abs=error)
+        assert moved.upper + shift == pytest.approx(upper, abs=error)
 
 
 def test_turning_the_direction_round_swaps_the_ends(space, rng):
@@ -169,7 +182,7 @@ def test_motion_is_valid_both_ways_or_neither(space, rng):
 
 def test_motion_stops_short_of_the_end_of_a_chord_and_not_beyond(space, rng):
     for point, direction in random_lines(space, rng):
-        step = 1e-9 * size(space) / np.linalg.norm(direction)
+        step = tolerance(space) / np.linalg.norm(direction)
         upper = space.chord(point, direction).upper
         if upper <= step:
             continue
@@ -232,6 +245,16 @@ def test_what_is_returned_is_fresh(space, rng):
     except ValueError:
         pass  # read-only is as good
     assert np.array_equal(space.bounds[0], kept)
+
+
+def test_a_pickled_space_and_a_copy_answer_alike(space, rng):
+    points, directions = random_points(space, rng, 40), rng.standard_normal((40, space.dim))
+    for other in (pickle.loads(pickle.dumps(space)), copy.deepcopy(space)):
+        assert repr(other) == repr(space)
+        np.testing.assert_array_equal(other.bounds, space.bounds)
+        np.testing.assert_array_equal(other.contains(points), space.contains(points))
+        for x, u in zip(points, directions, strict=True):
+            assert other.chord(x, u) == space.chord(x, u)
 
 
 def test_connected_is_an_equivalence_that_no_motion_leaves(space, rng):

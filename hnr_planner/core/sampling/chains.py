@@ -87,8 +87,8 @@ def run_chain(space: Space, walk: Any, chain: Chain, thin: int, draws: Floats) -
         raise StuckError(
             f'a chain has not moved in {STUCK_AFTER} steps from '
             f'{space.from_kernel(chain.x).tolist()}: of {steps} steps {moves} moved it, '
-            f'{zero_chords} had no chord longer than {space.margin * space.scale:g}; a ball walk '
-            f'needs a smaller radius, others a start that is farther from the boundary'
+            f'{zero_chords} had no chord longer than {space.zero_length * space.scale:g}; a ball '
+            f'walk needs a smaller radius, others a start that is farther from the boundary'
         )
 
 
@@ -154,7 +154,7 @@ class Chains:
 
     @property
     def zero_chords(self) -> NDArray[np.int64]:
-        """Number of steps of each chain (n_chains,) with a chord below the space's margin."""
+        """Number of steps of each chain (n_chains,) with a chord below the space's zero length."""
         return self.counts[:, ZERO_CHORDS]
 
     @property

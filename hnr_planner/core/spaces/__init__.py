@@ -1,15 +1,12 @@
-"""Spaces: open, bounded sets of free points that answer for points and chords."""
+"""Spaces: open, bounded sets of free points that answer points and chords."""
 
 from hnr_planner.core.spaces.ball import BallSpace
 from hnr_planner.core.spaces.box import BoxSpace
 from hnr_planner.core.spaces.callbacks import OracleError
-from hnr_planner.core.spaces.curves import surfaces  # noqa: F401 - kernels
 from hnr_planner.core.spaces.difference import DifferenceSpace
-from hnr_planner.core.spaces.grid import curves  # noqa: F401 - kernels
 from hnr_planner.core.spaces.grid.grid_space import GridSpace
 from hnr_planner.core.spaces.oracle import OracleSpace
 from hnr_planner.core.spaces.polygon.polygon_space import PolygonSpace
-from hnr_planner.core.spaces.polytope import chain_cache  # noqa: F401 - kernels
 from hnr_planner.core.spaces.polytope.polytope_space import PolytopeSpace
 from hnr_planner.core.spaces.product import ProductSpace
 from hnr_planner.core.spaces.sheared import ShearedSpace

@@ -5,9 +5,17 @@ from typing import NamedTuple
 
 from hnr_planner.core.checks import check_point, check_real, check_vector, Floats
 from hnr_planner.core.errors import SpaceError
-from hnr_planner.core.kernels.kernel import inlined
-from hnr_planner.core.spaces.bounds import check_bounds
-from hnr_planner.core.spaces.convex import convex, count, holds, span
+from hnr_planner.core.kernels.kernel import inlined, kernel
+from hnr_planner.core.spaces.bounds import check_bounds, in_words, kernel_origin
+from hnr_planner.core.spaces.convex import convex, count_pieces, piece_contains, piece_span
+from hnr_planner.core.spaces.curves.curve import first_exit_on_curve
+from hnr_planner.core.spaces.curves.surfaces import (
+    add_crossings,
+    add_sphere_crossings,
+    first_exit_between_surfaces,
+    max_gap_of,
+    own_max_gap,
+)
 from hnr_planner.core.spaces.space import Space
 import numpy as np
 from numpy.typing import ArrayLike
@@ -21,11 +29,11 @@ class BallData(NamedTuple):
     Attributes
     ----------
     centres : (k, dim)
-        Their centres.
+        Centres of the balls.
     radii : (k,)
-        Their radii.
+        Radii of the balls.
     max_gap : float
-        What may lie between two of them.
+        Longest gap between two balls that a ray passes.
 
     """
 
@@ -36,7 +44,7 @@ class BallData(NamedTuple):
 
 class BallSpace(Space):
     """
-    The points nearer than ``radius`` to ``centre``.
+    The points nearer than ``radius`` to ``centre``: an open ball.
 
     Parameters
     ----------
@@ -59,7 +67,12 @@ class BallSpace(Space):
             raise SpaceError(f'radius must be above 0 and finite, got {self.radius!r}')
         self.dim = len(self.centre)
         check_bounds('the ball', *self.bounds)
-        self.data = BallData(self.centre[np.newaxis].copy(), np.array([self.radius]), 0.0)
+        self._kernel_origin = kernel_origin(*self.bounds)
+        self.data = self.compiled_at(self._kernel_origin)
+
+    def __repr__(self) -> str:
+        """Name the centre and the radius."""
+        return f'BallSpace(centre={in_words(self.centre)}, radius={self.radius:g})'
 
     @property
     def bounds(self) -> tuple[Floats, Floats]:
@@ -68,29 +81,40 @@ class BallSpace(Space):
 
     @property
     def typical_clearance(self) -> float:
-        """Mean distance from a point to the sphere."""
+        """Mean distance from a point of the ball to the sphere, exact."""
         return self.radius / (self.dim + 1)
 
+    def compiled_at(self, origin: Floats | None) -> BallData:
+        """Return the compiled ball in the caller's frame moved to ``origin`` (dim,); None: 0."""
+        shift = np.zeros(self.dim) if origin is None else origin
+        return BallData((self.centre - shift)[np.newaxis], np.array([self.radius]), 0.0)
+
     def covers_box(self, lower: Floats, upper: Floats) -> bool:
-        """Say whether the corner that is farthest away lies in the closed ball."""
+        """Return whether the corner of a box that is farthest away lies in the closed ball."""
         farthest = np.maximum(np.abs(lower - self.centre), np.abs(upper - self.centre))
         return bool(np.linalg.norm(farthest) <= self.radius)
 
     def why_not_free(self, point: ArrayLike) -> str:
-        """Say in words why ``point`` (dim,) is not free."""
+        """Return in words why ``point`` (dim,) is not free."""
         distance = np.linalg.norm(check_point('point', point, self.dim) - self.centre)
         return f'{distance:g} away from the centre of a ball of radius {self.radius:g}'
 
 
-@count.register(BallData)
+first_exit_on_curve.register(BallData)(first_exit_between_surfaces)
+max_gap_of.register(BallData)(own_max_gap)
+
+
+@count_pieces.register(BallData)
 @inlined
-def _count(balls):
+def _count_pieces(balls):
+    """Return the number of balls."""
     return len(balls.radii)
 
 
-@holds.register(BallData)
+@piece_contains.register(BallData)
 @inlined
-def _holds(balls, k, x, closed):
+def _piece_contains(balls, k, x, closed):
+    """Compare the squared distance from the centre of ball ``k`` with its squared radius."""
     squared = 0.0
     for i in range(len(x)):
         squared += (x[i] - balls.centres[k, i]) ** 2
@@ -98,10 +122,10 @@ def _holds(balls, k, x, closed):
     return excess < 0.0 or (closed and excess == 0.0)
 
 
-@span.register(BallData)
+@piece_span.register(BallData)
 @inlined
-def _span(balls, k, x, u, closed):
-    """Solve a s^2 + 2 b s + c = 0, where c has the sign that ``_holds`` sees."""
+def _piece_span(balls, k, x, u, closed):
+    """Solve a s^2 + 2 b s + c = 0, where c has the sign that ``_piece_contains`` finds."""
     a, b, squared = 0.0, 0.0, 0.0
     for i in range(len(x)):
         offset = x[i] - balls.centres[k, i]
@@ -113,9 +137,18 @@ def _span(balls, k, x, u, closed):
     if discriminant < 0.0 or (discriminant == 0.0 and not closed):
         return math.inf, -math.inf
     root = math.sqrt(discriminant)
-    # Of the two forms of each solution, the one that subtracts nothing.
+    # Of the two forms of each solution take the one without cancellation.
     if b > 0.0:
         return -(b + root) / a, -c / (b + root)
     if root > b:
         return c / (root - b), (root - b) / a
     return 0.0, 0.0
+
+
+@add_crossings.register(BallData)
+@kernel
+def _add_crossings(balls, curve, end, crossings, n):
+    """Add where a curve meets the spheres."""
+    for k in range(len(balls.radii)):
+        n = add_sphere_crossings(curve, balls.centres[k], balls.radii[k], end, crossings, n)
+    return n

@@ -1,37 +1,76 @@
-"""Bounds: a box around a space, which floating-point numbers can resolve."""
+"""Bounds: a box around a space, and whether floating-point numbers resolve it."""
 
 import math
 
-from hnr_planner.core.checks import Floats
+from hnr_planner.core.checks import check_vector, Floats
 from hnr_planner.core.errors import SpaceError
 from hnr_planner.core.kernels.kernel import kernel
 import numpy as np
+from numpy.typing import ArrayLike
 
-#: Coordinates must resolve this part of each side, or chords would end in their rounding.
+#: Kernels need coordinates that resolve this fraction of each side: chords end in their rounding.
 FINEST = 1e-10
+#: The caller's coordinates must resolve this fraction of each side, or the space is refused.
+COARSEST = 1e-6
 
 
 def check_bounds(name: str, lower: Floats, upper: Floats) -> None:
-    """Refuse bounds (dim,) of a space that are not finite, without inside, or too far away."""
+    """Raise SpaceError unless bounds (dim,) are finite, have an inside and are resolved."""
     if not (np.isfinite(lower).all() and np.isfinite(upper).all()):
         raise SpaceError(f'{name} must be bounded, its bounds are {_words(lower, upper)}')
     if not (lower < upper).all():
         raise SpaceError(f'{name} must have an inside, its bounds are {_words(lower, upper)}')
-    rounding = np.spacing(np.maximum(np.abs(lower), np.abs(upper)))
-    if not (rounding <= FINEST * (upper - lower)).all():
+    if not (_rounding(lower, upper) <= COARSEST * (upper - lower)).all():
         raise SpaceError(
-            f'{name} is too thin for where it lies: coordinates must resolve {FINEST:g} of each '
-            f'side, its bounds are {_words(lower, upper)}'
+            f'{name} is too thin for where it lies: coordinates must resolve {COARSEST:g} of each '
+            f'side, its bounds are {_words(lower, upper)}; move it nearer to the origin'
         )
 
 
+def check_corners(lower: ArrayLike, upper: ArrayLike) -> tuple[Floats, Floats]:
+    """Return the corners (dim,) of a box as fresh arrays, or raise SpaceError."""
+    begin = check_vector('lower', lower, SpaceError)
+    end = check_vector('upper', upper, SpaceError)
+    if begin.shape != end.shape:
+        raise SpaceError(
+            f'lower and upper must be of one dimension, got {len(begin)} and {len(end)}'
+        )
+    check_bounds('the box', begin, end)
+    return begin, end
+
+
+def kernel_origin(lower: Floats, upper: Floats) -> Floats | None:
+    """
+    Return the origin (dim,) of the kernel frame of a space with these bounds; None for 0.
+
+    A coordinate that does not resolve ``FINEST`` of its side is counted from the middle of the
+    bounds, the others from 0. Then the subtraction of the origin is exact for points in the bounds
+    (Sterbenz's lemma), and a space near 0 keeps the caller's frame.
+    """
+    is_far = _rounding(lower, upper) > FINEST * (upper - lower)
+    return np.where(is_far, lower + (upper - lower) / 2.0, 0.0) if is_far.any() else None
+
+
+def in_words(vector: Floats) -> str:
+    """Return a vector (dim,) for a repr: short numbers, and the first and last two of many."""
+    return np.array2string(
+        vector, separator=', ', threshold=6, edgeitems=2, formatter={'float_kind': '{:g}'.format}
+    )
+
+
+def _rounding(lower: Floats, upper: Floats) -> Floats:
+    """Return the spacing (dim,) of floating-point numbers at the far end of the bounds."""
+    return np.asarray(np.spacing(np.maximum(np.abs(lower), np.abs(upper))))
+
+
 def _words(lower: Floats, upper: Floats) -> str:
+    """Return bounds in full, for a message."""
     return f'{lower.tolist()} .. {upper.tolist()}'
 
 
 @kernel
-def within(lower, upper, x, u):
-    """Return where the line ``x + s u`` enters and leaves a box; (inf, -inf) for never."""
+def box_span(lower, upper, x, u):
+    """Return the interval of the line ``x + s u`` in a closed box; (inf, -inf) for none."""
     first, last = -math.inf, math.inf
     for i in range(len(x)):
         below, above = lower[i] - x[i], upper[i] - x[i]

@@ -3,11 +3,18 @@
 import math
 from typing import NamedTuple
 
-from hnr_planner.core.checks import check_point, check_vector, Floats
-from hnr_planner.core.errors import SpaceError
-from hnr_planner.core.kernels.kernel import inlined
-from hnr_planner.core.spaces.bounds import check_bounds
-from hnr_planner.core.spaces.convex import convex, count, holds, span
+from hnr_planner.core.checks import check_point, Floats
+from hnr_planner.core.kernels.kernel import inlined, kernel
+from hnr_planner.core.spaces.bounds import check_corners, in_words, kernel_origin
+from hnr_planner.core.spaces.convex import convex, count_pieces, piece_contains, piece_span
+from hnr_planner.core.spaces.curves.curve import coordinate, first_exit_on_curve
+from hnr_planner.core.spaces.curves.surfaces import (
+    add_crossings,
+    add_level_crossings,
+    first_exit_between_surfaces,
+    max_gap_of,
+    own_max_gap,
+)
 from hnr_planner.core.spaces.space import Space
 import numpy as np
 from numpy.typing import ArrayLike
@@ -21,9 +28,9 @@ class BoxData(NamedTuple):
     Attributes
     ----------
     lower, upper : (k, dim)
-        Their corners.
+        Corners of the boxes.
     max_gap : float
-        What may lie between two of them.
+        Longest gap between two boxes that a ray passes.
 
     """
 
@@ -34,7 +41,7 @@ class BoxData(NamedTuple):
 
 class BoxSpace(Space):
     """
-    The points above ``lower`` and below ``upper`` in every coordinate.
+    The points above ``lower`` and below ``upper`` in every coordinate: an open box.
 
     Parameters
     ----------
@@ -49,28 +56,31 @@ class BoxSpace(Space):
     """
 
     def __init__(self, lower: ArrayLike, upper: ArrayLike) -> None:
-        self.lower = check_vector('lower', lower, SpaceError)
-        self.upper = check_vector('upper', upper, SpaceError)
-        if self.lower.shape != self.upper.shape:
-            raise SpaceError(
-                f'lower and upper must be of one dimension, got {len(self.lower)} and '
-                f'{len(self.upper)}'
-            )
-        check_bounds('the box', self.lower, self.upper)
+        self.lower, self.upper = check_corners(lower, upper)
         self.dim = len(self.lower)
-        self.data = BoxData(self.lower[np.newaxis].copy(), self.upper[np.newaxis].copy(), 0.0)
+        self._kernel_origin = kernel_origin(self.lower, self.upper)
+        self.data = self.compiled_at(self._kernel_origin)
+
+    def __repr__(self) -> str:
+        """Name the corners."""
+        return f'BoxSpace(lower={in_words(self.lower)}, upper={in_words(self.upper)})'
 
     @property
     def bounds(self) -> tuple[Floats, Floats]:
         """Lower and upper corner (dim,)."""
         return self.lower.copy(), self.upper.copy()
 
+    def compiled_at(self, origin: Floats | None) -> BoxData:
+        """Return the compiled box in the caller's frame moved to ``origin`` (dim,); None for 0."""
+        shift = np.zeros(self.dim) if origin is None else origin
+        return BoxData((self.lower - shift)[np.newaxis], (self.upper - shift)[np.newaxis], 0.0)
+
     def covers_box(self, lower: Floats, upper: Floats) -> bool:
-        """Say whether the other box lies in this one, faces included."""
+        """Return whether the other box lies in this one, faces included."""
         return bool((self.lower <= lower).all() and (upper <= self.upper).all())
 
     def why_not_free(self, point: ArrayLike) -> str:
-        """Say in words why ``point`` (dim,) is not free."""
+        """Return in words why ``point`` (dim,) is not free."""
         x = check_point('point', point, self.dim)
         i = int(np.argmax(np.maximum(self.lower - x, x - self.upper)))
         return (
@@ -79,15 +89,21 @@ class BoxSpace(Space):
         )
 
 
-@count.register(BoxData)
+first_exit_on_curve.register(BoxData)(first_exit_between_surfaces)
+max_gap_of.register(BoxData)(own_max_gap)
+
+
+@count_pieces.register(BoxData)
 @inlined
-def _count(boxes):
+def _count_pieces(boxes):
+    """Return the number of boxes."""
     return len(boxes.lower)
 
 
-@holds.register(BoxData)
+@piece_contains.register(BoxData)
 @inlined
-def _holds(boxes, k, x, closed):
+def _piece_contains(boxes, k, x, closed):
+    """Compare every coordinate with the faces of box ``k``."""
     for i in range(len(x)):
         below, above = x[i] - boxes.lower[k, i], boxes.upper[k, i] - x[i]
         if not (min(below, above) > 0.0 or (closed and min(below, above) == 0.0)):
@@ -95,10 +111,10 @@ def _holds(boxes, k, x, closed):
     return True
 
 
-@span.register(BoxData)
+@piece_span.register(BoxData)
 @inlined
-def _span(boxes, k, x, u, closed):
-    """Cut the line with the two faces across each axis."""
+def _piece_span(boxes, k, x, u, closed):
+    """Intersect the line with the two faces of box ``k`` across each axis."""
     first, last = -math.inf, math.inf
     for i in range(len(x)):
         below, above = boxes.lower[k, i] - x[i], boxes.upper[k, i] - x[i]
@@ -111,3 +127,15 @@ def _span(boxes, k, x, u, closed):
     if first < last or (closed and first == last):
         return first, last
     return math.inf, -math.inf
+
+
+@add_crossings.register(BoxData)
+@kernel
+def _add_crossings(boxes, curve, end, crossings, n):
+    """Add where a curve meets the planes of the faces."""
+    for k in range(len(boxes.lower)):
+        for i in range(boxes.lower.shape[1]):
+            f = coordinate(curve, i)
+            n = add_level_crossings(f, boxes.lower[k, i], end, crossings, n)
+            n = add_level_crossings(f, boxes.upper[k, i], end, crossings, n)
+    return n

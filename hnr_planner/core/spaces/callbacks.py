@@ -1,9 +1,9 @@
 """
-Functions of a user's that compiled code calls: by address, so that they are data.
+Functions of the user that compiled code calls by address: an address is data to a kernel.
 
-A function compiled by numba costs what a call costs. One in Python takes the interpreter's lock
-for each answer, a few microseconds; what it raises ends the kernel with an ``OracleError``. Either
-way kernels are compiled, and kept on disk, once for all functions.
+A function compiled by numba costs no more than a call. One in Python takes the interpreter's lock
+for each answer, a few microseconds; what it raises ends the kernel with an ``OracleError``. In
+both cases kernels are compiled, and cached on disk, once for all functions.
 """
 
 from collections.abc import Callable
@@ -18,30 +18,35 @@ from numba.core.dispatcher import Dispatcher
 from numba.extending import intrinsic, overload
 import numpy as np
 
-#: What a function gets: numbers, how many, and room for its answer. What it returns: 0, or FAILED.
+#: A function gets numbers, their count, and memory for its answer; it returns 0 or ``FAILED``.
 _C_TYPE = ctypes.CFUNCTYPE(ctypes.c_int32, ctypes.c_void_p, ctypes.c_int64, ctypes.c_void_p)
 _NATIVE = types.int32(types.CPointer(types.float64), types.int64, types.CPointer(types.float64))
-_FLOAT, FAILED = 8, -1
+#: Bytes of a number.
+_FLOAT = 8
+#: Returned by a function that raised.
+FAILED = -1
 
 _raised = threading.local()
 
 
 class OracleError(HnrError):
-    """A user's function raised: the cause says what."""
+    """A function of the user's that a space calls raised an error, which is the cause of this."""
 
     def __init__(self) -> None:
         self.__cause__ = getattr(_raised, 'error', None)
-        super().__init__(f'the function of an OracleSpace raised {self.__cause__!r}')
+        super().__init__(f'the function of a space raised {self.__cause__!r}')
 
 
 def callback(function: Callable[..., Any], n_arrays: int) -> Any:
     """
-    Return a function as one that ``ask`` calls: keep it for as long as its ``address`` is used.
+    Return a function in the form that ``ask`` calls.
+
+    It has to be kept for as long as its ``address`` is used.
 
     Parameters
     ----------
     function : callable
-        From so many arrays (dim,) to a number, or a truth value. Compiled by numba or not.
+        Of ``n_arrays`` arrays (dim,), returns a number or a truth value. Compiled by numba or not.
     n_arrays : int
         1 or 2.
 
@@ -59,6 +64,8 @@ def address(called_back: Any) -> int:
 
 
 def _python(function: Callable[..., Any], n_arrays: int) -> Any:
+    """Return a function in Python as a C function that takes the interpreter's lock."""
+
     def answer(numbers: int, count: int, result: int) -> int:
         try:
             # A copy, which the function may keep, and which it cannot change.
@@ -74,6 +81,7 @@ def _python(function: Callable[..., Any], n_arrays: int) -> Any:
 
 
 def _native(function: Dispatcher, n_arrays: int) -> Any:
+    """Return a function compiled by numba as a C function."""
     if n_arrays == 1:
 
         def answer(numbers, count, result):
@@ -90,13 +98,13 @@ def _native(function: Dispatcher, n_arrays: int) -> Any:
 
 
 def ask(at: int, numbers: Any, result: Any) -> int:
-    """Call a function by its address: its answer is in ``result`` (1,). Return 0, or FAILED."""
+    """Call a function by its address and write its answer to ``result`` (1,); 0, or FAILED."""
     return _C_TYPE(at)(numbers.ctypes.data, len(numbers), result.ctypes.data)
 
 
 @intrinsic
 def _call(_typing_context: Any, at: Any, numbers: Any, count: Any, result: Any) -> Any:
-    """Call the function at an address."""
+    """Call the function at an address from compiled code."""
 
     def generate(_context: Any, builder: Any, _signature: Any, arguments: Any) -> Any:
         ir: Any = cgutils.ir

@@ -1,10 +1,10 @@
 """
-Places: where a chain stands, and what a space keeps about it from one step to the next.
+The cache of a chain: its position, and what a space keeps about it from one step to the next.
 
-A walk asks for the chord through a point and then moves along it, again and again. A space that
-remembers what it worked out there answers the next question with less work: a polytope keeps the
-distances to its planes, and changes only those that a step changes. It registers kernels of its
-own for what follows; every other space remembers nothing.
+A walk asks for the chord through its point and then moves along it, again and again. A space that
+keeps what it computed answers the next question with less work: a polytope keeps the distances to
+its planes, and updates only those that a step changes. It registers its own kernels for the
+functions of this module; every other space caches nothing.
 """
 
 from typing import Any, NamedTuple
@@ -12,25 +12,25 @@ from typing import Any, NamedTuple
 from hnr_planner.core.checks import Floats
 from hnr_planner.core.kernels.dispatch import dispatched
 from hnr_planner.core.kernels.kernel import inlined, kernel
-from hnr_planner.core.spaces.primitives import chord, contains
+from hnr_planner.core.spaces.primitives import chord, CompiledSpace, contains
 
-#: Steps after which a chain has all that is remembered worked out anew, so that rounding does not
-#: add up. They count from its beginning: a run that was stopped goes on to the same last bit.
+#: Steps of a chain after which its cache is computed anew, so that rounding does not accumulate.
+#: They count from the chain's beginning: a run that was stopped goes on to the same last bit.
 REFRESH = 1024
-#: Says that a direction is not that of an axis.
+#: Value of ``axis`` for a direction that is not along an axis.
 NO_AXIS = -1
 
 
 class ChainCache(NamedTuple):
     """
-    Where a chain stands in a space that remembers nothing.
+    Position of a chain in a space that caches nothing.
 
     Attributes
     ----------
     x : (dim,)
         The chain's point.
     y, back : (dim,)
-        Room for the next one, and for the opposite direction.
+        Memory for the next point, and for the opposite direction.
 
     """
 
@@ -41,18 +41,19 @@ class ChainCache(NamedTuple):
 
 @dispatched
 @kernel
-def memory_size(space: Any, dim: int) -> int:
-    """Return how many numbers ``space`` keeps for each chain."""
+def memory_size(space: CompiledSpace, dim: int) -> int:
+    """Return the number of floats that ``space`` keeps for each chain."""
     return 2 * dim
 
 
 @dispatched
 @inlined
-def open_cache(space: Any, x: Any, memory: Any) -> Any:
+def open_cache(space: CompiledSpace, x: Floats, memory: Floats) -> Any:
     """
-    Return views of a chain's point ``x`` and of its memory, that the other kernels work on.
+    Return the cache of a chain: views of its point ``x`` (dim,) and of its ``memory``.
 
-    The first two fields are ``x``, which they move, and ``y`` (dim,), room for another point.
+    The first two fields are ``x``, which the other kernels move, and ``y`` (dim,), memory for
+    another point.
     """
     dim = len(x)
     return ChainCache(x, memory[:dim], memory[dim:])
@@ -60,17 +61,17 @@ def open_cache(space: Any, x: Any, memory: Any) -> Any:
 
 @dispatched
 @inlined
-def refresh(space: Any, cache: Any) -> None:
-    """Work out anew, from the point alone, all that is remembered."""
+def refresh(space: CompiledSpace, cache: Any) -> None:
+    """Compute the cache anew, from the chain's point alone."""
 
 
 @dispatched
 @inlined
-def chord_cached(space: Any, cache: Any, u: Any, axis: int) -> tuple[float, float]:
+def chord_cached(space: CompiledSpace, cache: Any, u: Floats, axis: int) -> tuple[float, float]:
     """
-    Return the largest free interval of the line ``x + s u`` around ``s = 0``.
+    Return the chord of the chain's point along ``u`` (dim,): parameters (lower, upper).
 
-    ``axis`` says which unit vector ``u`` is, and ``NO_AXIS`` that it is none.
+    ``axis`` is the index of the axis along which ``u`` is the unit vector, or ``NO_AXIS``.
     """
     for i in range(len(u)):
         cache.back[i] = -u[i]
@@ -79,11 +80,11 @@ def chord_cached(space: Any, cache: Any, u: Any, axis: int) -> tuple[float, floa
 
 @dispatched
 @inlined
-def move_along(space: Any, cache: Any, u: Any, axis: int, s: float) -> bool:
+def move_along(space: CompiledSpace, cache: Any, u: Floats, axis: int, s: float) -> bool:
     """
-    Move to ``x + s u`` on the line whose chord was asked last.
+    Move to ``x + s u`` on the line of the last chord; return whether the chain moved.
 
-    Or stay, and return False, where that rounds to a point that is not free.
+    The chain stays where ``x + s u`` rounds to a point that is not free.
     """
     for i in range(len(u)):
         cache.y[i] = cache.x[i] + s * u[i]
@@ -92,7 +93,7 @@ def move_along(space: Any, cache: Any, u: Any, axis: int, s: float) -> bool:
 
 @inlined
 def move_if_free(space, cache):
-    """Move to ``cache.y`` if that is a free point; say whether it is."""
+    """Move to ``cache.y`` where that is a free point; return whether it is."""
     if not contains(space, cache.y):
         return False
     for i in range(len(cache.x)):

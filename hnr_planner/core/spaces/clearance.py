@@ -1,12 +1,12 @@
 """
-Distance to the occupied squares of a grid, from points and along paths: exact.
+Exact distance to the occupied squares of a grid, from points and along paths.
 
-Squares are looked for in rings of cells around the middle of a short piece of the path. The first
-ring is the one where the distance field says that there is something; the last is the one beyond
-which no square can be nearer to the piece than the nearest so far.
+Squares are searched in rings of cells around the middle of a short piece of the path. The first
+ring is the one in which the distance field has an occupied cell; the last is the one beyond which
+no square can be nearer to the piece than the nearest found so far.
 
-Arrays are those of the kernel frame: ``wall_distance`` (rows, cols) is the distance in king's
-moves to the nearest occupied cell; distances are in cells.
+Kernel frame: ``wall_distance`` (rows, cols) is the distance in king's moves to the nearest
+occupied cell, and lengths are in cells.
 """
 
 import math
@@ -14,15 +14,15 @@ import math
 from hnr_planner.core.kernels.kernel import kernel
 import numpy as np
 
-#: The field of distances ends here: what is farther is not told apart [cells].
+#: Largest value of the distance field: farther cells have this value [cells].
 FARTHEST_WALL = 254.0
-#: Pieces of a path are about as long as the clearance, but not shorter than this [cells].
+#: Least length of a piece of a path; others are as long as the clearance there [cells].
 SHORTEST_PIECE = 2.0
 
 
 @kernel
 def point_clearance(wall_distance, points):
-    """Distances (k,) from points (k, 2) to the nearest occupied square; inf without one."""
+    """Return the distances (k,) from points (k, 2) to the nearest occupied square, or inf."""
     clearance = np.empty(len(points))
     for k in range(len(points)):
         x, y = points[k]
@@ -32,13 +32,13 @@ def point_clearance(wall_distance, points):
 
 @kernel
 def clearance_within(wall_distance, x, most):
-    """Distance from a point (2,) to the nearest occupied square, at most ``most``."""
+    """Return the distance from a point (2,) to the nearest occupied square, at most ``most``."""
     return _piece_clearance(wall_distance, x[0], x[1], x[0], x[1], most)
 
 
 @kernel
 def path_clearance(wall_distance, path):
-    """Least distance from a path (m, 2) to an occupied square; inf without one."""
+    """Return the least distance from a path (m, 2) to an occupied square; inf without one."""
     x, y = path[0]
     least = _piece_clearance(wall_distance, x, y, x, y, math.inf)
     for k in range(1, len(path)):
@@ -57,7 +57,7 @@ def path_clearance(wall_distance, path):
 
 @kernel
 def _piece_clearance(wall_distance, ax, ay, bx, by, least):
-    """Distance from the segment a-b to the nearest occupied square, or ``least`` if less."""
+    """Return the distance from the segment a-b to the nearest square, at most ``least``."""
     rows, columns = wall_distance.shape
     half = math.hypot(bx - ax, by - ay) / 2.0
     column = min(max(math.floor((ax + bx) / 2.0), 0), columns - 1)
@@ -77,7 +77,11 @@ def _piece_clearance(wall_distance, ax, ay, bx, by, least):
 
 @kernel
 def _side_clearance(wall_distance, row, column, up, right, n, ax, ay, bx, by, least):
-    """Distance from the segment a-b to the occupied among ``n`` cells in a line, as above."""
+    """
+    Return the distance from the segment a-b to the occupied cells of a row, at most ``least``.
+
+    The row has ``n`` cells from (row, column) on, in steps of (up, right).
+    """
     rows, columns = wall_distance.shape
     x, y, half = (ax + bx) / 2.0, (ay + by) / 2.0, math.hypot(bx - ax, by - ay) / 2.0
     k = 0
@@ -85,7 +89,7 @@ def _side_clearance(wall_distance, row, column, up, right, n, ax, ay, bx, by, le
         r, c = row + k * up, column + k * right
         k += 1
         if 0 <= r < rows and 0 <= c < columns:
-            # As many cells as this are not occupied.
+            # This many further cells of the row are not occupied.
             k += max(int(wall_distance[r, c]) - 1, 0)
             nearest = math.hypot(_outside(x, c), _outside(y, r)) - half
             if wall_distance[r, c] == 0 and nearest < least:
@@ -95,10 +99,10 @@ def _side_clearance(wall_distance, row, column, up, right, n, ax, ay, bx, by, le
 
 @kernel
 def _square_distance(ax, ay, bx, by, column, row):
-    """Distance between the segment a-b and the square of a cell."""
+    """Return the distance between the segment a-b and the square of a cell."""
     if _crosses(ax, ay, bx, by, column, row):
         return 0.0
-    # Apart, the nearest pair has an end of the segment or a corner of the square in it.
+    # Of two disjoint ones, a nearest pair has an end of the segment or a corner of the square.
     nearest = min(
         math.hypot(_outside(ax, column), _outside(ay, row)),
         math.hypot(_outside(bx, column), _outside(by, row)),
@@ -111,12 +115,13 @@ def _square_distance(ax, ay, bx, by, column, row):
 
 @kernel
 def _outside(x, cell):
-    """How far ``x`` is outside the interval [cell, cell + 1]."""
+    """Return the distance from ``x`` to the interval [cell, cell + 1]."""
     return max(cell - x, x - (cell + 1), 0.0)
 
 
 @kernel
 def _point_to_segment(x, y, ax, ay, bx, by):
+    """Return the distance from the point (x, y) to the segment a-b."""
     dx, dy = bx - ax, by - ay
     squared = dx * dx + dy * dy
     s = 0.0
@@ -127,7 +132,7 @@ def _point_to_segment(x, y, ax, ay, bx, by):
 
 @kernel
 def _crosses(ax, ay, bx, by, column, row):
-    """Say whether the segment meets the square: the parts of it inside both slabs overlap."""
+    """Return whether the segment a-b meets the square of a cell: both slabs at once."""
     first, last = 0.0, 1.0
     for a, d, cell in ((ax, bx - ax, column), (ay, by - ay, row)):
         if d == 0.0:

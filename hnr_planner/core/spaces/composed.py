@@ -1,6 +1,7 @@
-"""What composed spaces have in common at the door."""
+"""Checks and words that composed spaces share."""
 
 from collections.abc import Iterable
+from itertools import groupby
 from typing import Any
 
 from hnr_planner.core.errors import SpaceError
@@ -24,3 +25,9 @@ def check_same_dim(members: Iterable[Space]) -> int:
     if len(dims) > 1:
         raise SpaceError(f'the members must be of one dimension, got {dims}')
     return dims[0]
+
+
+def summary(members: Iterable[Space]) -> str:
+    """Return how many members there are of each kind, such as ``2 BoxSpace, 1 BallSpace``."""
+    kinds = groupby(type(member).__name__ for member in members)
+    return ', '.join(f'{len(list(group))} {kind}' for kind, group in kinds)

@@ -1,22 +1,23 @@
 """
 Convex pieces: sets that cut one interval out of every line.
 
-The data of such a space holds one piece or several, which together mean their union: pieces of one
-kind lie in the same arrays, so that a union of many is one short loop. Each array has one row for
-each piece, and the last field, ``max_gap``, is how far apart two pieces may be for a ray to pass from
-one to the other. A type decorated with ``convex`` registers kernels for ``count``, ``holds`` and
-``span``, and the primitives follow from them.
+The data of such a space holds one piece or several, and means their union: pieces of one kind lie
+in the same arrays, so that a union of many is one short loop. Each array has one row for each
+piece, and the last field, ``max_gap``, is the longest gap between two pieces that a ray passes. A
+type decorated with ``convex`` registers kernels for ``count_pieces``, ``piece_contains`` and
+``piece_span``, and the primitives follow from them.
 """
 
 from collections.abc import Sequence
 import math
 from typing import Any, TypeVar
 
+from hnr_planner.core.checks import Floats
 from hnr_planner.core.kernels.dispatch import dispatched
 from hnr_planner.core.kernels.kernel import kernel
 from hnr_planner.core.lengths import norm
 from hnr_planner.core.spaces import primitives
-from hnr_planner.core.spaces.primitives import first_exit
+from hnr_planner.core.spaces.primitives import CompiledSpace, first_exit
 import numpy as np
 
 DataType = TypeVar('DataType', bound=type)
@@ -24,21 +25,23 @@ DataType = TypeVar('DataType', bound=type)
 
 @dispatched
 @kernel
-def count(space: Any) -> int:
-    """Return how many pieces there are."""
+def count_pieces(space: CompiledSpace) -> int:
+    """Return the number of pieces."""
     raise NotImplementedError
 
 
 @dispatched
 @kernel
-def holds(space: Any, k: int, x: Any, closed: bool) -> bool:
-    """Say whether piece ``k`` holds ``x``, its boundary included when ``closed``."""
+def piece_contains(space: CompiledSpace, k: int, x: Floats, closed: bool) -> bool:
+    """Return whether piece ``k`` contains ``x`` (dim,), its boundary included when ``closed``."""
     raise NotImplementedError
 
 
 @dispatched
 @kernel
-def span(space: Any, k: int, x: Any, u: Any, closed: bool) -> tuple[float, float]:
+def piece_span(
+    space: CompiledSpace, k: int, x: Floats, u: Floats, closed: bool
+) -> tuple[float, float]:
     """
     Return the interval of the line ``x + s u`` in piece ``k``; (inf, -inf) for none.
 
@@ -48,7 +51,7 @@ def span(space: Any, k: int, x: Any, u: Any, closed: bool) -> tuple[float, float
 
 
 def convex(data_type: DataType) -> DataType:
-    """Let the primitives answer for NamedTuples of ``data_type``, whose pieces are convex."""
+    """Register the primitives for NamedTuples of ``data_type``, whose pieces are convex."""
     for primitive, answer in (
         (primitives.contains, _contains),
         (primitives.touches, _touches),
@@ -61,61 +64,65 @@ def convex(data_type: DataType) -> DataType:
     return data_type
 
 
-def is_convex(data: Any) -> bool:
-    """Say whether data holds convex pieces, which ``pack`` takes."""
-    return span.knows(data)
+def is_convex(data: CompiledSpace) -> bool:
+    """Return whether a compiled space holds convex pieces, which ``pack`` takes."""
+    return piece_span.knows(data)
 
 
 def pack(pieces: Sequence[Any], max_gap: float) -> Any:
-    """Return the data of all pieces of several data of one type, between which gaps close."""
+    """Return compiled spaces of one type as one, which closes gaps up to ``max_gap``."""
     fields = zip(*(data[:-1] for data in pieces), strict=True)
     return type(pieces[0])(*map(np.concatenate, fields), max_gap)
 
 
 @kernel
 def _contains(space, x):
-    return _any_holds(space, x, False)
+    """Return whether a piece contains ``x``."""
+    return _any_contains(space, x, False)
 
 
 @kernel
 def _touches(space, x):
-    return _any_holds(space, x, True)
+    """Return whether the closure of a piece contains ``x``."""
+    return _any_contains(space, x, True)
 
 
 @kernel
-def _any_holds(space, x, closed):
-    for k in range(count(space)):
-        if holds(space, k, x, closed):
+def _any_contains(space, x, closed):
+    """Return whether one of the pieces, open or closed, contains ``x``."""
+    for k in range(count_pieces(space)):
+        if piece_contains(space, k, x, closed):
             return True
     return False
 
 
 @kernel
-def _first_exit(space, x, u, t, enough):
-    """Go to the end of a piece that holds the line at ``t``, and on in those that reach on."""
+def _first_exit(space, x, u, t, horizon):
+    """Go to the end of a piece that contains the line at ``t``, and on in those that continue."""
     s = t
-    for k in range(count(space)):
-        lower, upper = span(space, k, x, u, False)
+    for k in range(count_pieces(space)):
+        lower, upper = piece_span(space, k, x, u, False)
         if lower < t < upper:
             s = max(s, upper)
-    if s == t or count(space) == 1:
+    if s == t or count_pieces(space) == 1:
         return s
     max_gap = space.max_gap / norm(u)
-    reaching = True
-    while reaching and s <= enough:
-        reaching = False
-        for k in range(count(space)):
-            lower, upper = span(space, k, x, u, False)
+    continues = True
+    while continues and s <= horizon:
+        continues = False
+        for k in range(count_pieces(space)):
+            lower, upper = piece_span(space, k, x, u, False)
             if lower < s + max_gap < upper:
-                s, reaching = upper, True
+                s, continues = upper, True
     return s
 
 
 @kernel
 def _first_entry(space, x, u, t):
+    """Return the first parameter from ``t`` on at which the line touches a piece."""
     first = math.inf
-    for k in range(count(space)):
-        lower, upper = span(space, k, x, u, True)
+    for k in range(count_pieces(space)):
+        lower, upper = piece_span(space, k, x, u, True)
         if t <= upper:
             first = min(first, max(t, lower))
     return first
@@ -123,19 +130,19 @@ def _first_entry(space, x, u, t):
 
 @kernel
 def _chord(space, x, u, back):
-    """Take both ends from one piece; several may reach on from one to the next."""
-    if count(space) > 1:
+    """Take both ends from a single piece; of several, go from piece to piece both ways."""
+    if count_pieces(space) > 1:
         return -first_exit(space, x, back, 0.0, math.inf), first_exit(space, x, u, 0.0, math.inf)
-    lower, upper = span(space, 0, x, u, False)
+    lower, upper = piece_span(space, 0, x, u, False)
     return (lower, upper) if lower < 0.0 < upper else (0.0, 0.0)
 
 
 @kernel
 def _gap(space, x, u, back):
-    """Let every piece cut off what lies behind it, on either side."""
+    """Cut the line at every piece, before and behind ``x``."""
     lower, upper = -math.inf, math.inf
-    for k in range(count(space)):
-        first, last = span(space, k, x, u, True)
+    for k in range(count_pieces(space)):
+        first, last = piece_span(space, k, x, u, True)
         if first <= 0.0 <= last:
             return 0.0, 0.0
         if last < 0.0:

@@ -1,12 +1,20 @@
-"""A space without what others hold."""
+"""A space without the points of others."""
 
+from functools import cached_property
 import math
 from typing import Any, NamedTuple
 
 from hnr_planner.core.checks import check_point, Floats
 from hnr_planner.core.errors import SpaceError
 from hnr_planner.core.kernels.kernel import kernel
-from hnr_planner.core.spaces.composed import check_members, check_same_dim
+from hnr_planner.core.spaces.bounds import kernel_origin
+from hnr_planner.core.spaces.composed import check_members, check_same_dim, summary
+from hnr_planner.core.spaces.curves.curve import first_exit_on_curve
+from hnr_planner.core.spaces.curves.surfaces import (
+    add_crossings,
+    first_exit_between_surfaces,
+    max_gap_of,
+)
 from hnr_planner.core.spaces.primitives import (
     chord,
     component,
@@ -38,19 +46,24 @@ class DifferenceData(NamedTuple):
 
 class DifferenceSpace(Space):
     """
-    The points of a space outside some others, whose boundaries are taken away with them.
+    The points of a space outside some others, which are taken away with their boundaries.
 
     Parameters
     ----------
     base : Space
-        What there is at first.
+        The space from which the others are taken away.
     *removed : Space
-        What is taken away: at least one, of the same dimension.
+        What is taken away: at least one space, of the same dimension.
 
     Raises
     ------
     SpaceError
-        When the spaces do not fit, or nothing is left for certain.
+        When the spaces do not fit, or it is certain that nothing is left.
+
+    Attributes
+    ----------
+    base : Space
+    removed : tuple of Space
 
     """
 
@@ -61,7 +74,21 @@ class DifferenceSpace(Space):
         for k, member in enumerate(self.removed):
             if member.covers_box(*self.base.bounds):
                 raise SpaceError(f'nothing is left: removed member {k} covers the whole base')
-        self.data = DifferenceData(self.base.compiled, UnionSpace(*self.removed).compiled)
+        self._kernel_origin = kernel_origin(*self.bounds)
+
+    def __repr__(self) -> str:
+        """Name the base and the kinds of what is removed."""
+        return f'DifferenceSpace(base={self.base!r}, removed: {summary(self.removed)})'
+
+    @cached_property
+    def data(self) -> DifferenceData:
+        """The compiled difference, in the kernel frame."""
+        return self.compiled_at(self._kernel_origin)
+
+    def compiled_at(self, origin: Floats | None) -> DifferenceData:
+        """Return the compiled space in the caller's frame moved to ``origin`` (dim,); None: 0."""
+        removed = UnionSpace(*self.removed)
+        return DifferenceData(self.base.compiled_at(origin), removed.compiled_at(origin))
 
     @property
     def bounds(self) -> tuple[Floats, Floats]:
@@ -70,12 +97,12 @@ class DifferenceSpace(Space):
 
     @property
     def typical_clearance(self) -> float:
-        """That of the base, in the caller's units, cut down by what lies in between."""
+        """Typical clearance of the base, less by what is removed, in the caller's units."""
         of_base = self.base.typical_clearance * self.base.scale
         return of_base / (1.0 + len(self.removed)) ** (1.0 / self.dim)
 
     def why_not_free(self, point: ArrayLike) -> str:
-        """Say in words why ``point`` (dim,) is not free."""
+        """Return in words why ``point`` (dim,) is not free."""
         x = check_point('point', point, self.dim)
         if not self.base.contains(x):
             return self.base.why_not_free(x)
@@ -85,29 +112,35 @@ class DifferenceSpace(Space):
         return 'on the boundary of a removed member'
 
 
+first_exit_on_curve.register(DifferenceData)(first_exit_between_surfaces)
+
+
 @contains.register(DifferenceData)
 @kernel
 def _contains(difference, x):
+    """Return whether ``x`` is free in the base and does not touch what is removed."""
     return contains(difference.base, x) and not touches(difference.removed, x)
 
 
 @touches.register(DifferenceData)
 @kernel
 def _touches(difference, x):
+    """Return whether ``x`` touches the base and is not inside what is removed."""
     return touches(difference.base, x) and not contains(difference.removed, x)
 
 
 @first_exit.register(DifferenceData)
 @kernel
-def _first_exit(difference, x, u, t, enough):
-    end = first_exit(difference.base, x, u, t, enough)
+def _first_exit(difference, x, u, t, horizon):
+    """Leave the base or touch what is removed, whichever is first."""
+    end = first_exit(difference.base, x, u, t, horizon)
     return min(end, first_entry(difference.removed, x, u, t)) if end > t else t
 
 
 @first_entry.register(DifferenceData)
 @kernel
 def _first_entry(difference, x, u, t):
-    """Enter the base, and leave what is removed, until neither moves the line on."""
+    """Enter the base and leave what is removed in turn, until neither moves the line on."""
     s = first_entry(difference.base, x, u, t)
     while s < math.inf:
         out = first_exit(difference.removed, x, u, s, math.inf)
@@ -120,6 +153,7 @@ def _first_entry(difference, x, u, t):
 @chord.register(DifferenceData)
 @kernel
 def _chord(difference, x, u, back):
+    """Intersect the chord in the base with the gap between what is removed."""
     lower, upper = chord(difference.base, x, u, back)
     first, last = gap(difference.removed, x, u, back)
     return max(lower, first), min(upper, last)
@@ -128,5 +162,20 @@ def _chord(difference, x, u, back):
 @component.register(DifferenceData)
 @kernel
 def _component(difference, x):
-    """Return the part of the base: what is removed may cut it into more, but joins none."""
+    """Return the component of the base: what is removed may split it, but joins none."""
     return component(difference.base, x) if contains(difference, x) else 0
+
+
+@add_crossings.register(DifferenceData)
+@kernel
+def _add_crossings(difference, curve, end, crossings, n):
+    """Add the crossings of the base and of what is removed."""
+    n = add_crossings(difference.base, curve, end, crossings, n)
+    return add_crossings(difference.removed, curve, end, crossings, n)
+
+
+@max_gap_of.register(DifferenceData)
+@kernel
+def _max_gap_of(difference):
+    """Return the longest gap that closes in the base."""
+    return max_gap_of(difference.base)

@@ -1,106 +1,131 @@
 """
-The primitives: what a compiled space answers, and all that walks and planners ask.
+Primitives of a compiled space: the questions that walks and planners ask.
 
-A compiled space is a NamedTuple of arrays, and registers a kernel of its own for each primitive.
-Those with a body here follow from the others: a space registers them where it knows better.
+A compiled space is a NamedTuple of arrays whose type registers a kernel for each primitive. The
+primitives with a body here are derived from the others; a type overrides them where it has a
+faster or more exact answer.
 
-Leaving asks for the open set and entering for its closure: what is taken away from a space is
-closed, so that free space stays open.
+``first_exit`` refers to the open set and ``first_entry`` to its closure: what a difference takes
+away is closed, so that free space stays open.
+
+Points ``x`` and directions ``u`` are arrays (dim,) in the frame of the compiled space. Lines are
+written ``x + s u``: a parameter ``s`` is in units of ``|u|``.
 """
 
+from collections.abc import Iterator
 import math
-from typing import Any
+from typing import Any, Protocol
 
+from hnr_planner.core.checks import Floats
 from hnr_planner.core.kernels.dispatch import dispatched
 from hnr_planner.core.kernels.kernel import kernel
 import numpy as np
 
 
+class CompiledSpace(Protocol):
+    """
+    A NamedTuple of arrays and numbers for whose type the primitives are registered.
+
+    Compiled spaces may be nested: a field of a composed space is a compiled space.
+    """
+
+    @property
+    def _fields(self) -> tuple[str, ...]:
+        """Names of the fields, as every NamedTuple has them."""
+
+    def __iter__(self) -> Iterator[Any]:
+        """Iterate over the values of the fields."""
+
+
 @dispatched
 @kernel
-def contains(space: Any, x: Any) -> bool:
-    """Say whether ``x`` is a free point of ``space``."""
+def contains(space: CompiledSpace, x: Floats) -> bool:
+    """Return whether ``x`` is a free point of ``space``."""
     raise NotImplementedError
 
 
 @dispatched
 @kernel
-def touches(space: Any, x: Any) -> bool:
-    """Say whether ``x`` is in the closure of the free points: free, or on the boundary."""
+def touches(space: CompiledSpace, x: Floats) -> bool:
+    """Return whether ``x`` is in the closure of the free points: free, or on the boundary."""
     raise NotImplementedError
 
 
 @dispatched
 @kernel
-def first_exit(space: Any, x: Any, u: Any, t: float, enough: float) -> float:
+def first_exit(space: CompiledSpace, x: Floats, u: Floats, t: float, horizon: float) -> float:
     """
     Return the first parameter ``s >= t`` at which the line ``x + s u`` leaves ``space``.
 
-    That is ``t`` itself where the line is out already. Once the line is known to stay inside until
-    ``enough`` the search may stop there: any value above ``enough`` is an answer.
+    It is ``t`` itself where the line is outside at ``t``. The search may stop once the line is
+    known to stay inside up to ``horizon``: then any value above ``horizon`` may be returned.
     """
     raise NotImplementedError
 
 
 @dispatched
 @kernel
-def first_entry(space: Any, x: Any, u: Any, t: float) -> float:
-    """Return the first parameter ``s >= t`` at which the line touches ``space``; inf for never."""
+def first_entry(space: CompiledSpace, x: Floats, u: Floats, t: float) -> float:
+    """
+    Return the first parameter ``s >= t`` at which ``x + s u`` touches ``space``.
+
+    It is ``t`` itself where the line touches the space at ``t``, and inf where it never does.
+    """
     raise NotImplementedError
 
 
 @dispatched
 @kernel
-def chord(space: Any, x: Any, u: Any, back: Any) -> tuple[float, float]:
+def chord(space: CompiledSpace, x: Floats, u: Floats, back: Floats) -> tuple[float, float]:
     """
     Return the largest open interval of ``x + s u`` around ``s = 0`` that is free.
 
-    For a free point ``x``; ``back`` is ``-u``.
+    ``x`` has to be free (``chord_or_empty`` checks that), and ``back`` has to be ``-u``.
     """
     return -first_exit(space, x, back, 0.0, math.inf), first_exit(space, x, u, 0.0, math.inf)
 
 
 @dispatched
 @kernel
-def gap(space: Any, x: Any, u: Any, back: Any) -> tuple[float, float]:
+def gap(space: CompiledSpace, x: Floats, u: Floats, back: Floats) -> tuple[float, float]:
     """
     Return the largest open interval of ``x + s u`` around ``s = 0`` that does not touch ``space``.
 
-    For a point ``x`` that does not; the ends may be infinite, and ``back`` is ``-u``.
+    ``x`` must not touch the space, and ``back`` has to be ``-u``. The ends may be infinite.
     """
     return -first_entry(space, x, back, 0.0), first_entry(space, x, u, 0.0)
 
 
 @dispatched
 @kernel
-def component(space: Any, x: Any) -> int:
+def component(space: CompiledSpace, x: Floats) -> int:
     """
-    Return the number of the connected part of ``space`` that holds ``x``; 0 where it is not free.
+    Return the number of the component that holds ``x``, from 1; 0 where ``x`` is not free.
 
-    No path leads from one part to another. A space that does not know its parts gives all free
-    points the same number.
+    No path leads from one number to another. A space that does not know its components gives all
+    free points the same number.
     """
     return 1 if contains(space, x) else 0
 
 
 @dispatched
 @kernel
-def segment_is_free(space: Any, a: Any, b: Any) -> bool:
-    """Say whether the closed segment from ``a`` to ``b`` is free: the chord goes beyond ``b``."""
+def segment_is_free(space: CompiledSpace, a: Floats, b: Floats) -> bool:
+    """Return whether the closed segment a-b is free: whether the chord ends beyond ``b``."""
     if not (contains(space, a) and contains(space, b)):
         return False
     u = b - a
     return not u.any() or first_exit(space, a, u, 0.0, 1.0) > 1.0
 
 
-def kind_of(space: Any) -> tuple[Any, ...]:
-    """Return what compiled code is made for: the type of a compiled space and of its parts."""
-    return (type(space), *(kind_of(part) for part in space if contains.knows(part)))
+def kind_of(space: CompiledSpace) -> tuple[Any, ...]:
+    """Return what machine code depends on: the types of a compiled space and of nested ones."""
+    return (type(space), *(kind_of(field) for field in space if contains.knows(field)))
 
 
 @kernel
 def are_free(space, points):
-    """Say which of ``points`` (k, dim) are free: (k,) bool."""
+    """Return which of ``points`` (k, dim) are free: (k,) bool."""
     free = np.empty(len(points), dtype=np.bool_)
     for k in range(len(points)):
         free[k] = contains(space, points[k])
@@ -109,7 +134,7 @@ def are_free(space, points):
 
 @kernel
 def contains_around(space, x, slack):
-    """Say whether ``x`` stays free when any of its coordinates changes by ``slack``."""
+    """Return whether ``x`` is free, and stays so when any one coordinate changes by ``slack``."""
     y = x.copy()
     for i in range(len(x)):
         for offset in (-slack, slack):
@@ -121,28 +146,16 @@ def contains_around(space, x, slack):
 
 
 @kernel
-def part_of(space, x):
-    """Return the number of the connected part that holds ``x``: ``component`` for Python."""
-    return component(space, x)
-
-
-@kernel
 def chord_or_empty(space, x, u):
-    """Return the ends of the largest free interval of ``x + s u`` around ``s = 0``."""
+    """Return the chord through ``x`` along ``u``; (0, 0) where ``x`` is not free."""
     if not contains(space, x):
         return 0.0, 0.0
     return chord(space, x, u, -u)
 
 
 @kernel
-def sees_from(space, a, b):
-    """Say whether the closed segment from ``a`` to ``b`` is free, for Python."""
-    return segment_is_free(space, a, b)
-
-
-@kernel
 def first_blocked_segment(space, points):
-    """Index of the first segment of a path (m, dim) that is not free; -1 when all are."""
+    """Return the index of the first segment of a path (m, dim) that is not free; -1 for none."""
     for k in range(len(points) - 1):
         if not segment_is_free(space, points[k], points[k + 1]):
             return k

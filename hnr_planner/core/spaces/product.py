@@ -1,13 +1,16 @@
 """The product of spaces, such as position and velocity."""
 
+from functools import cached_property
 from itertools import pairwise
 import math
 from typing import Any, NamedTuple
 
 from hnr_planner.core.checks import check_point, Floats
 from hnr_planner.core.kernels.kernel import kernel
+from hnr_planner.core.spaces.bounds import kernel_origin
 from hnr_planner.core.spaces.composed import check_members
 from hnr_planner.core.spaces.primitives import (
+    CompiledSpace,
     component,
     contains,
     first_entry,
@@ -18,20 +21,20 @@ from hnr_planner.core.spaces.space import Space
 import numpy as np
 from numpy.typing import ArrayLike
 
-#: No factor has more parts than this.
+#: Number of components that no factor exceeds.
 COMPONENTS_MAX = 2**31
 
 
 class ProductData(NamedTuple):
     """
-    A compiled product of two; that of more is nested.
+    A compiled product of two; a product of more is nested.
 
     Attributes
     ----------
     one, other : NamedTuple
         Compiled spaces.
     split : int
-        ``one`` sees the coordinates before it, ``other`` the rest.
+        Number of coordinates of ``one``; ``other`` has the rest.
 
     """
 
@@ -54,6 +57,10 @@ class ProductSpace(Space):
     SpaceError
         When there is no factor.
 
+    Attributes
+    ----------
+    factors : tuple of Space
+
     """
 
     def __init__(self, *factors: Space) -> None:
@@ -61,9 +68,27 @@ class ProductSpace(Space):
         ends = np.cumsum([0, *(factor.dim for factor in self.factors)]).tolist()
         self.dim = ends[-1]
         self._slices = [slice(first, last) for first, last in pairwise(ends)]
-        self.data = self.factors[0].compiled
-        for factor, part in zip(self.factors[1:], self._slices[1:], strict=True):
-            self.data = ProductData(self.data, factor.compiled, part.start)
+        self._kernel_origin = kernel_origin(*self.bounds)
+
+    def __repr__(self) -> str:
+        """Name the factors."""
+        return f'ProductSpace(dim={self.dim}, factors={self.factors!r})'
+
+    @cached_property
+    def data(self) -> CompiledSpace:
+        """The compiled product, in the kernel frame."""
+        return self.compiled_at(self._kernel_origin)
+
+    def compiled_at(self, origin: Floats | None) -> CompiledSpace:
+        """Return the compiled product in the caller's frame moved to ``origin``; None for 0."""
+        compiled = [
+            factor.compiled_at(None if origin is None else origin[own])
+            for factor, own in zip(self.factors, self._slices, strict=True)
+        ]
+        product = compiled[0]
+        for factor, own in zip(compiled[1:], self._slices[1:], strict=True):
+            product = ProductData(product, factor, own.start)
+        return product
 
     @property
     def bounds(self) -> tuple[Floats, Floats]:
@@ -73,23 +98,23 @@ class ProductSpace(Space):
 
     @property
     def typical_clearance(self) -> float:
-        """That of the narrowest factor, in the caller's units."""
+        """Typical clearance of the narrowest factor, in the caller's units."""
         return min(factor.typical_clearance * factor.scale for factor in self.factors)
 
     def covers_box(self, lower: Floats, upper: Floats) -> bool:
-        """Say whether every factor is known to."""
+        """Return whether every factor is known to cover its coordinates of a box."""
         return all(
-            factor.covers_box(lower[part], upper[part])
-            for factor, part in zip(self.factors, self._slices, strict=True)
+            factor.covers_box(lower[own], upper[own])
+            for factor, own in zip(self.factors, self._slices, strict=True)
         )
 
     def why_not_free(self, point: ArrayLike) -> str:
-        """Say in words why ``point`` (dim,) is not free."""
+        """Return in words why ``point`` (dim,) is not free."""
         x = check_point('point', point, self.dim)
-        for k, (factor, part) in enumerate(zip(self.factors, self._slices, strict=True)):
-            if not factor.contains(x[part]):
-                return f'in factor {k}, coordinates {part.start}..{part.stop - 1}, ' + (
-                    factor.why_not_free(x[part])
+        for k, (factor, own) in enumerate(zip(self.factors, self._slices, strict=True)):
+            if not factor.contains(x[own]):
+                return f'in factor {k}, coordinates {own.start}..{own.stop - 1}, ' + (
+                    factor.why_not_free(x[own])
                 )
         return 'not in the space'
 
@@ -97,6 +122,7 @@ class ProductSpace(Space):
 @contains.register(ProductData)
 @kernel
 def _contains(product, x):
+    """Return whether each factor contains its coordinates of ``x``."""
     k = product.split
     return contains(product.one, x[:k]) and contains(product.other, x[k:])
 
@@ -104,22 +130,23 @@ def _contains(product, x):
 @touches.register(ProductData)
 @kernel
 def _touches(product, x):
+    """Return whether the closure of each factor contains its coordinates of ``x``."""
     k = product.split
     return touches(product.one, x[:k]) and touches(product.other, x[k:])
 
 
 @first_exit.register(ProductData)
 @kernel
-def _first_exit(product, x, u, t, enough):
-    """Leave the factor that is left first."""
+def _first_exit(product, x, u, t, horizon):
+    """Return where the line leaves the first of the two factors."""
     k, end = product.split, math.inf
-    # A line may stand still in one of the factors.
+    # The line may be a single point in one of the factors.
     if u[:k].any():
-        end = first_exit(product.one, x[:k], u[:k], t, enough)
+        end = first_exit(product.one, x[:k], u[:k], t, horizon)
     elif not contains(product.one, x[:k]):
         return t
     if u[k:].any():
-        end = min(end, first_exit(product.other, x[k:], u[k:], t, enough))
+        end = min(end, first_exit(product.other, x[k:], u[k:], t, horizon))
     elif not contains(product.other, x[k:]):
         return t
     return end
@@ -128,7 +155,7 @@ def _first_exit(product, x, u, t, enough):
 @first_entry.register(ProductData)
 @kernel
 def _first_entry(product, x, u, t):
-    """Go on to where the other factor is entered, until both are at once."""
+    """Enter the two factors in turn, until the line touches both."""
     k = product.split
     moves, other_moves = u[:k].any(), u[k:].any()
     if not (moves or touches(product.one, x[:k])):
@@ -148,7 +175,7 @@ def _first_entry(product, x, u, t):
 @component.register(ProductData)
 @kernel
 def _component(product, x):
-    """Return a number for each pair of parts."""
+    """Return a number for each pair of components; 0 where one of them is 0."""
     k = product.split
     one, other = component(product.one, x[:k]), component(product.other, x[k:])
     return one + COMPONENTS_MAX * (other - 1) if one > 0 and other > 0 else 0

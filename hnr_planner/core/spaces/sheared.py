@@ -1,4 +1,4 @@
-"""A ball or a box under a shear: a set that is not convex, with its map to one that is."""
+"""A ball or a box under a shear: a set that is not convex, and its map to a convex one."""
 
 import math
 from typing import NamedTuple
@@ -7,7 +7,7 @@ from hnr_planner.core.checks import check_point, check_points, check_real, Float
 from hnr_planner.core.errors import SpaceError
 from hnr_planner.core.kernels.kernel import kernel
 from hnr_planner.core.spaces.ball import BallSpace
-from hnr_planner.core.spaces.bounds import check_bounds, within
+from hnr_planner.core.spaces.bounds import box_span, check_bounds, kernel_origin
 from hnr_planner.core.spaces.box import BoxSpace
 from hnr_planner.core.spaces.curves.polynomials import next_change, value
 from hnr_planner.core.spaces.primitives import contains, first_entry, first_exit, touches
@@ -15,11 +15,11 @@ from hnr_planner.core.spaces.space import Space
 import numpy as np
 from numpy.typing import ArrayLike
 
-#: What is pressed together more than this leaves no room that coordinates resolve.
+#: Strongest stretch and compression of which coordinates resolve the image.
 STRETCH_MAX = 1e4
-#: Rounding of a coordinate mapped back, as a part of its terms, with room to spare.
+#: Rounding of a coordinate mapped back, as a fraction of its terms, with room to spare.
 ROUNDING = 32 * 2.0**-53
-#: How far around the bounds a line is followed, as a part of their sides.
+#: Distance around the bounds up to which a line is followed, as a fraction of their sides.
 AROUND = 1e-6
 
 
@@ -32,13 +32,13 @@ class ShearedData(NamedTuple):
     lower, upper : (dim,)
         Corners of the box, or of a box around the ball.
     centre : (dim,)
-        Its centre.
+        Centre of the box or the ball.
     radius : float
-        That of the ball; 0 for a box.
+        Radius of the ball; 0 for a box.
     bend : float
-        The last coordinate is moved by this times the square of the first, seen from the centre.
+        The last coordinate is moved by this times the square of the first, from the centre.
     rounding : float
-        What rounding can make of 0 in an inequality.
+        Largest rounding error of 0 in an inequality.
     begin, end : (dim,)
         Corners of a box around the image, with room to spare.
 
@@ -80,9 +80,9 @@ class ShearedSpace(Space):
     base : BallSpace or BoxSpace
     bend : float
     stretch : float
-        Lipschitz constant of g, the paper's L_Sigma: the largest that cannot be improved.
+        Lipschitz constant of g, the paper's L_Sigma: the least one, exactly.
     shrink : float
-        That of the inverse, the paper's L_Omega: equal to it.
+        Lipschitz constant of the inverse, the paper's L_Omega: equal to ``stretch``.
 
     """
 
@@ -91,27 +91,40 @@ class ShearedSpace(Space):
             raise SpaceError(f'base must be a BallSpace or a BoxSpace, got {base!r}')
         if base.dim < 2:
             raise SpaceError('base must have two dimensions at least, it has 1')
-        self.base, self.dim = base, base.dim
+        self.base, self.dim, self.centre = base, base.dim, _centre(base)
         self.bend = check_real('bend', bend, SpaceError)
         if not math.isfinite(self.bend):
             raise SpaceError(f'bend must be finite, got {self.bend!r}')
         self.stretch = self.shrink = _largest_stretch(base, self.bend)
         if self.stretch > STRETCH_MAX:
             raise SpaceError(
-                f'bend must press the base together by no more than {STRETCH_MAX:g}, but '
-                f'{self.bend!r} does by {self.stretch:g}'
+                f'bend must stretch the base by no more than {STRETCH_MAX:g}, but '
+                f'{self.bend!r} stretches it by {self.stretch:g}'
             )
         self._lower, self._upper = _bounds(base, self.bend)
         check_bounds('the sheared space', self._lower, self._upper)
+        self._kernel_origin = kernel_origin(self._lower, self._upper)
+        self.data = self.compiled_at(self._kernel_origin)
+
+    def __repr__(self) -> str:
+        """Name the base and the shear."""
+        return f'ShearedSpace(base={self.base!r}, bend={self.bend:g})'
+
+    def compiled_at(self, origin: Floats | None) -> ShearedData:
+        """Return the compiled space in the caller's frame moved to ``origin`` (dim,); None: 0."""
+        shift = np.zeros(self.dim) if origin is None else origin
+        lower, upper = (corner - shift for corner in self.base.bounds)
         rim = AROUND * (self._upper - self._lower)
-        self.data = ShearedData(
-            *base.bounds,
-            _centre(base),
-            base.radius if isinstance(base, BallSpace) else 0.0,
+        radius = self.base.radius if isinstance(self.base, BallSpace) else 0.0
+        return ShearedData(
+            lower,
+            upper,
+            self.centre - shift,
+            radius,
             self.bend,
-            _rounding(base, self.bend),
-            self._lower - rim,
-            self._upper + rim,
+            _rounding(lower, upper, radius, self.bend),
+            self._lower - shift - rim,
+            self._upper - shift + rim,
         )
 
     @property
@@ -121,7 +134,7 @@ class ShearedSpace(Space):
 
     @property
     def typical_clearance(self) -> float:
-        """That of the base, where it is pressed together most."""
+        """Typical clearance of the base where it is compressed most."""
         return self.base.typical_clearance / self.shrink
 
     def image(self, points: ArrayLike) -> Floats:
@@ -133,23 +146,25 @@ class ShearedSpace(Space):
         return self._moved(points, -self.bend)
 
     def why_not_free(self, point: ArrayLike) -> str:
-        """Say in words why ``point`` (dim,) is not free."""
+        """Return in words why ``point`` (dim,) is not free."""
         reason = self.base.why_not_free(self.preimage(check_point('point', point, self.dim)))
         return f'mapped back, {reason}'
 
     def _moved(self, points: ArrayLike, bend: float) -> Floats:
+        """Return points (..., dim) under the shear by ``bend``."""
         moved = check_points('points', points, self.dim)
-        moved[..., -1] += bend * (moved[..., 0] - self.data.centre[0]) ** 2
+        moved[..., -1] += bend * (moved[..., 0] - self.centre[0]) ** 2
         return moved
 
 
 def _centre(base: BallSpace | BoxSpace) -> Floats:
+    """Return the centre (dim,) of the base."""
     lower, upper = base.bounds
     return base.centre.copy() if isinstance(base, BallSpace) else (lower + upper) / 2.0
 
 
 def _bounds(base: BallSpace | BoxSpace, bend: float) -> tuple[Floats, Floats]:
-    """Lower and upper corner (dim,) of the image."""
+    """Return the lower and upper corner (dim,) of the image."""
     lower, upper = base.bounds
     half = (upper[0] - lower[0]) / 2.0
     if isinstance(base, BoxSpace):
@@ -166,7 +181,7 @@ def _bounds(base: BallSpace | BoxSpace, bend: float) -> tuple[Floats, Floats]:
 
 def _largest_stretch(base: BallSpace | BoxSpace, bend: float) -> float:
     """
-    Return the largest of ``|g(x) - g(y)| / |x - y|``, which is also that of ``|x - y| / |g - g|``.
+    Return the Lipschitz constant of g, which is also the one of its inverse.
 
     ``g(x) - g(y) = (1 + k e_n e_1^T) (x - y)`` with ``k = bend (x_1 + y_1 - 2 c_1)``, exactly: a
     linear shear, whose largest and whose inverse's largest singular value are both
@@ -177,28 +192,30 @@ def _largest_stretch(base: BallSpace | BoxSpace, bend: float) -> float:
     return (k + math.hypot(k, 2.0)) / 2.0
 
 
-def _rounding(base: BallSpace | BoxSpace, bend: float) -> float:
-    """Return what rounding can make of 0 in an inequality: a length, its square for a ball."""
-    lower, upper = base.bounds
+def _rounding(lower: Floats, upper: Floats, radius: float, bend: float) -> float:
+    """Return the largest rounding error of 0 in an inequality: a length, its square for a ball."""
     half = float(upper[0] - lower[0]) / 2.0
     size = float(np.abs([lower, upper]).max()) + abs(bend) * half**2
-    return ROUNDING * size * (half if isinstance(base, BallSpace) else 1.0)
+    return ROUNDING * size * (half if radius > 0.0 else 1.0)
 
 
 @contains.register(ShearedData)
 @kernel
 def _contains(sheared, x):
+    """Return whether ``x`` is inside every inequality."""
     return _holds(sheared, x, False)
 
 
 @touches.register(ShearedData)
 @kernel
 def _touches(sheared, x):
+    """Return whether ``x`` is inside or on the boundary of every inequality."""
     return _holds(sheared, x, True)
 
 
 @kernel
 def _holds(sheared, x, closed):
+    """Return whether every inequality holds at ``x``, strictly unless ``closed``."""
     coefficients, still = np.empty(5), np.zeros(len(x))
     for k in range(_count(sheared)):
         _write(sheared, k, x, still, coefficients)
@@ -209,9 +226,9 @@ def _holds(sheared, x, closed):
 
 @first_exit.register(ShearedData)
 @kernel
-def _first_exit(sheared, x, u, t, enough):
-    """Leave at the first inequality that fails."""
-    _, last = within(sheared.begin, sheared.end, x, u)
+def _first_exit(sheared, x, u, t, horizon):
+    """Return where the first inequality fails."""
+    _, last = box_span(sheared.begin, sheared.end, x, u)
     if t >= last:
         return t
     coefficients, rounding, s = np.empty(5), sheared.rounding, math.inf
@@ -226,8 +243,8 @@ def _first_exit(sheared, x, u, t, enough):
 @first_entry.register(ShearedData)
 @kernel
 def _first_entry(sheared, x, u, t):
-    """Go on to where an inequality holds that does not, until all hold at once."""
-    first, last = within(sheared.begin, sheared.end, x, u)
+    """Go on to where a violated inequality holds, until all hold."""
+    first, last = box_span(sheared.begin, sheared.end, x, u)
     coefficients, rounding = np.empty(5), sheared.rounding
     s, k, held = max(t, first), 0, 0
     while held < _count(sheared):
@@ -243,16 +260,17 @@ def _first_entry(sheared, x, u, t):
 
 @kernel
 def _count(sheared):
-    """Return how many inequalities there are: one for a ball, one for each face of a box."""
+    """Return the number of inequalities: one for a ball, one for each face of a box."""
     return 1 if sheared.radius > 0.0 else 2 * len(sheared.centre)
 
 
 @kernel
 def _write(sheared, k, x, u, coefficients):
     """
-    Write inequality ``k`` along ``x + s u`` as a polynomial in s, below 0 inside; its degree.
+    Write inequality ``k`` along ``x + s u`` as a polynomial in s, and return its degree.
 
-    Mapped back, the line is a parabola: only its last coordinate is not linear.
+    The polynomial is below 0 inside. Mapped back, the line is a parabola: only its last coordinate
+    is not linear.
     """
     c, n = coefficients, len(x)
     aside = x[0] - sheared.centre[0]

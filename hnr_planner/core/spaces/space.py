@@ -1,5 +1,5 @@
 """
-What a space is: an open, bounded set of free points that answers for points and for chords.
+The base class of spaces: open, bounded sets of free points that answer points and chords.
 
 Everything else is built on these answers. A Hit-and-Run step draws on a chord; a motion is free
 when the chord reaches beyond its end. The rules at the boundary are the same for every space:
@@ -10,20 +10,34 @@ when the chord reaches beyond its end. The rules at the boundary are the same fo
 """
 
 from abc import ABC, abstractmethod
+from functools import cached_property
+import threading
 from typing import Any, NamedTuple
 
 from hnr_planner.core.checks import check_direction, check_point, check_points, Floats
+from hnr_planner.core.errors import SpaceError
+from hnr_planner.core.spaces.oracle_data import OracleFunctions
 from hnr_planner.core.spaces.primitives import (
     are_free,
     chord_or_empty,
+    CompiledSpace,
     first_blocked_segment,
-    sees_from,
+    segment_is_free,
 )
+from hnr_planner.core.spaces.transformed import shifted
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
-#: How far before the end of a chord one stops, as a fraction of the bounds' diagonal.
+#: Distance before a chord's end at which one stops, as a fraction of the bounds' diagonal.
 MARGIN = 1e-9
+#: The same in roundings of the largest coordinate, for a space far from the origin.
+MARGIN_ROUNDINGS = 8.0
+#: Steps along the diagonal in which a line is searched for its entry into a space of Python.
+ENTRY_STEPS = 1000
+#: An end of a chord is located to this fraction of the margin where it is searched.
+CLOSENESS = 1e-3
+
+_FUNCTIONS_LOCK = threading.Lock()
 
 
 class Chord(NamedTuple):
@@ -37,9 +51,14 @@ class Space(ABC):
     """
     An open, bounded set of free points in R^dim.
 
-    A space keeps what its kernels need in ``data``, in the *kernel frame*: the caller's, unless a
-    space says otherwise, then a rigid motion and a scaling away. Searches run there; points cross
-    over at the door, by ``to_kernel`` and ``from_kernel``.
+    A space keeps what its kernels need in ``data``, in the *kernel frame*: the caller's frame, or
+    one that differs from it by a rigid motion and a scaling (a grid counts in cells, a space far
+    from the origin from its own middle). Searches run there; ``to_kernel`` and ``from_kernel``
+    convert points at the boundary of the package.
+
+    A subclass in plain Python sets ``dim`` and overrides ``bounds``, ``contains`` and ``chord``,
+    and ``is_motion_valid`` where it knows better than its chords; kernels then call back these
+    methods. They are called from many threads, one at a time.
 
     Attributes
     ----------
@@ -51,20 +70,72 @@ class Space(ABC):
     """
 
     dim: int
-    data: Any
+
+    #: Point (dim,) of the caller's frame that is the origin of the kernel frame; None for 0.
+    _kernel_origin: Floats | None = None
 
     @property
     @abstractmethod
     def bounds(self) -> tuple[Floats, Floats]:
         """Lower and upper corner (dim,) of a box around the free points, caller's frame."""
 
+    @cached_property
+    def data(self) -> Any:
+        """The compiled space of a subclass in Python: kernels call its methods."""
+        # Kernels call by address: a second set of functions must not replace the first.
+        with _FUNCTIONS_LOCK:
+            return self._functions.data
+
+    @cached_property
+    def _functions(self) -> OracleFunctions:
+        """The methods of a subclass in Python as functions that kernels call."""
+        kind = type(self)
+        if kind.contains is Space.contains or kind.chord is Space.chord:
+            raise SpaceError(
+                f'a space in Python must define contains and chord, which {kind.__name__} does '
+                f'not: OracleSpace makes a space of a function alone'
+            )
+        lower, upper = self.bounds
+        diagonal = float(np.linalg.norm(upper - lower))
+        return OracleFunctions(
+            lower,
+            upper,
+            diagonal / ENTRY_STEPS,
+            CLOSENESS * MARGIN * diagonal,
+            contains=self.contains,
+            chord=lambda x, u: self.chord(x, u)[1],
+            is_motion_valid=(
+                None if kind.is_motion_valid is Space.is_motion_valid else self.is_motion_valid
+            ),
+        )
+
+    def __repr__(self) -> str:
+        """Name the kind of space and its dimension."""
+        return f'{type(self).__name__}(dim={self.dim})'
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Leave cached properties out of pickles: they may hold addresses of this process."""
+        return {
+            name: value
+            for name, value in self.__dict__.items()
+            if not isinstance(getattr(type(self), name, None), cached_property)
+        }
+
+    def compiled_at(self, origin: Floats | None) -> CompiledSpace:
+        """Return the compiled space in the caller's frame moved to ``origin`` (dim,); None: 0."""
+        return shifted(self.data, self._kernel_origin, origin)
+
     @property
-    def compiled(self) -> Any:
+    def compiled(self) -> CompiledSpace:
         """The compiled space in the caller's frame: what composed spaces are made of."""
-        return self.data
+        return self.compiled_at(None)
 
     def covers_box(self, lower: Floats, upper: Floats) -> bool:
-        """Say whether the closure is known to hold all of the box between two corners (dim,)."""
+        """
+        Return whether the closure is known to hold a box with two given corners (dim,).
+
+        False where that is not known: a space overrides this where it can tell.
+        """
         return False
 
     @property
@@ -75,65 +146,89 @@ class Space(ABC):
     @property
     def kernel_bounds(self) -> tuple[Floats, Floats]:
         """Lower and upper corner (dim,) of a box around the free points, kernel frame."""
-        return self.bounds
+        if self._kernel_origin is None:
+            return self.bounds
+        lower, upper = self.bounds
+        return lower - self._kernel_origin, upper - self._kernel_origin
 
     @property
     def margin(self) -> float:
-        """Distance from a chord's end at which one stops, kernel frame."""
+        """
+        Distance from a chord's end at which one stops, kernel frame.
+
+        A fraction ``MARGIN`` of the bounds' diagonal, but never less than the caller's coordinates
+        resolve.
+        """
         lower, upper = self.kernel_bounds
-        return MARGIN * float(np.linalg.norm(upper - lower))
+        margin = MARGIN * float(np.linalg.norm(upper - lower))
+        if self._kernel_origin is None:
+            return margin
+        return max(margin, MARGIN_ROUNDINGS * float(np.spacing(np.abs(self.bounds).max())))
+
+    @property
+    def zero_length(self) -> float:
+        """Length up to which a chord counts as zero in the statistics of walks, kernel frame."""
+        return self.margin
 
     @property
     def typical_clearance(self) -> float:
         """
-        Distance from a free point to the boundary, roughly and on average, kernel frame.
+        Rough mean distance from a free point to the boundary, kernel frame.
 
-        Unless a space knows better, that of a cube with the shortest side of the bounds.
+        Unless a space overrides it: that of a cube whose side is the shortest of the bounds.
         """
         lower, upper = self.kernel_bounds
         return float((upper - lower).min()) / (2.0 * (self.dim + 1))
 
     @property
-    def walls(self) -> Any:
-        """What kernels measure the distance to walls in; None for a space without clearance."""
+    def walls(self) -> NDArray[Any] | None:
+        """Array in which kernels measure the distance to walls; None without clearance."""
         return None
 
     @property
     def island_points(self) -> Floats | None:
-        """A point (k, dim) in each obstacle that a path can go round; None where unknown."""
+        """A point (k, dim) in each obstacle that a path can go round, kernel frame; or None."""
         return None
 
     def to_kernel(self, points: Floats) -> Floats:
-        """Bring points (..., dim) of the caller's frame into the kernel frame, in a new array."""
-        return np.array(points, order='C')
+        """Convert points (..., dim) of the caller's frame to the kernel frame, in a new array."""
+        if self._kernel_origin is None:
+            return np.array(points, order='C')
+        return np.ascontiguousarray(points - self._kernel_origin)
 
     def from_kernel(self, points: Floats) -> Floats:
-        """Bring points (..., dim) of the kernel frame into the caller's frame; likewise."""
-        return np.array(points, order='C')
+        """Convert points (..., dim) of the kernel frame to the caller's frame, in a new array."""
+        if self._kernel_origin is None:
+            return np.array(points, order='C')
+        return np.ascontiguousarray(points + self._kernel_origin)
 
     def turn_to_kernel(self, directions: Floats) -> Floats:
-        """Turn directions (..., dim) into the kernel frame, without scaling them; likewise."""
+        """Rotate directions (..., dim) into the kernel frame, unscaled, in a new array."""
         return np.array(directions, order='C')
 
     def why_not_free(self, point: ArrayLike) -> str:
-        """Say in words why ``point`` (dim,) is not free."""
+        """Return in words why ``point`` (dim,) is not free, to follow the word 'is'."""
         return 'not in the space'
 
     def region_reachable(self, start: ArrayLike, goal: ArrayLike, radius: float) -> bool:
-        """Say whether a path leads into the ball around ``goal``; True where that is not known."""
+        """
+        Return whether a path leads from ``start`` (dim,) to within ``radius`` of ``goal`` (dim,).
+
+        True where that is not known.
+        """
         return True
 
     def rough_path(self, start: Floats, goal: Floats) -> Floats | None:
         """
-        Return a free path (m, dim) that takes a short way round obstacles, kernel frame.
+        Return a free path (m, dim) that takes a short route around obstacles, kernel frame.
 
-        It may wander on the way. None where the space knows none.
+        It may wander between them. None where the space knows no path.
         """
         return None
 
     def contains(self, points: ArrayLike) -> Any:
         """
-        Say which points are free.
+        Return which points are free.
 
         Parameters
         ----------
@@ -156,7 +251,7 @@ class Space(ABC):
         Parameters
         ----------
         point, direction : (dim,)
-            Caller's frame. The ends count in units of ``|direction|``.
+            Caller's frame. The ends are parameters in units of ``|direction|``.
 
         Raises
         ------
@@ -173,17 +268,17 @@ class Space(ABC):
         return Chord(*(float(np.ldexp(s * self.scale, -exponent)) for s in (lower, upper)))
 
     def is_motion_valid(self, start: ArrayLike, end: ArrayLike) -> bool:
-        """Say whether every point of the closed segment from ``start`` to ``end`` is free."""
+        """Return whether every point of the closed segment from ``start`` to ``end`` is free."""
         a = self.to_kernel(check_point('start', start, self.dim))
         b = self.to_kernel(check_point('end', end, self.dim))
-        return bool(sees_from(self.data, a, b))
+        return bool(segment_is_free(self.data, a, b))
 
     def first_blocked_segment(self, path: ArrayLike) -> int | None:
-        """Return the index of the first segment of a path (m, dim) that is not free, if any."""
+        """Return the index of the first segment of a path (m, dim) that is not free, or None."""
         points = self.to_kernel(check_points('path', path, self.dim))
         k = first_blocked_segment(self.data, points)
         return None if k < 0 else int(k)
 
     def is_path_free(self, path: Floats) -> bool:
-        """Say whether every segment of a path (m, dim) of finite numbers is free."""
+        """Return whether every segment of a path (m, dim) of finite numbers is free."""
         return bool(first_blocked_segment(self.data, self.to_kernel(path)) < 0)

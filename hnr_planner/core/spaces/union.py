@@ -1,15 +1,23 @@
 """The union of spaces."""
 
 from collections.abc import Iterable
-from functools import reduce
+from functools import cached_property, reduce
 from typing import Any, NamedTuple
 
 from hnr_planner.core.checks import Floats
 from hnr_planner.core.kernels.kernel import kernel
 from hnr_planner.core.lengths import norm
-from hnr_planner.core.spaces.composed import check_members, check_same_dim
+from hnr_planner.core.spaces.bounds import kernel_origin
+from hnr_planner.core.spaces.composed import check_members, check_same_dim, summary
 from hnr_planner.core.spaces.convex import is_convex, pack
+from hnr_planner.core.spaces.curves.curve import first_exit_on_curve
+from hnr_planner.core.spaces.curves.surfaces import (
+    add_crossings,
+    first_exit_between_surfaces,
+    max_gap_of,
+)
 from hnr_planner.core.spaces.primitives import (
+    CompiledSpace,
     contains,
     first_entry,
     first_exit,
@@ -22,14 +30,14 @@ from numpy.typing import ArrayLike
 
 class UnionData(NamedTuple):
     """
-    A compiled union of two; that of more is nested.
+    A compiled union of two; a union of more is nested.
 
     Attributes
     ----------
     one, other : NamedTuple
         Compiled spaces in one frame.
     max_gap : float
-        What may lie between them for a ray to pass.
+        Longest gap between the two that a ray passes.
 
     """
 
@@ -42,8 +50,8 @@ class UnionSpace(Space):
     """
     The points of any of its members.
 
-    Members that abut are joined: gaps up to 1e-9 of the diagonal are closed, so that rooms which end
-    at .3 and begin at .1 + .2 let a ray through.
+    Members that abut are joined: gaps up to 1e-9 of the diagonal are closed, so that rooms which
+    end at .3 and begin at .1 + .2 let a ray through.
 
     Parameters
     ----------
@@ -55,17 +63,25 @@ class UnionSpace(Space):
     SpaceError
         When the members make no union.
 
+    Attributes
+    ----------
+    members : tuple of Space
+
     """
 
     def __init__(self, *members: Space) -> None:
         self.members = check_members(members)
         self.dim = check_same_dim(self.members)
-        self.data = _joined(self._leaves(), self.margin)
+        self._kernel_origin = kernel_origin(*self.bounds)
 
-    def _leaves(self) -> Iterable[Any]:
-        """Compiled parts, and those of parts that are unions themselves."""
-        for member in self.members:
-            yield from member._leaves() if isinstance(member, UnionSpace) else [member.compiled]
+    def __repr__(self) -> str:
+        """Name the dimension and the kinds of members."""
+        return f'UnionSpace(dim={self.dim}, members: {summary(self.members)})'
+
+    @cached_property
+    def data(self) -> CompiledSpace:
+        """The compiled union, in the kernel frame."""
+        return self.compiled_at(self._kernel_origin)
 
     @property
     def bounds(self) -> tuple[Floats, Floats]:
@@ -75,55 +91,72 @@ class UnionSpace(Space):
 
     @property
     def typical_clearance(self) -> float:
-        """Mean of those of the parts, in the caller's units."""
+        """Mean of the members' typical clearances, in the caller's units."""
         return float(np.mean([member.typical_clearance * member.scale for member in self.members]))
 
+    def compiled_at(self, origin: Floats | None) -> CompiledSpace:
+        """Return the compiled union in the caller's frame moved to ``origin`` (dim,); None: 0."""
+        return _joined(self._leaves(origin), self.margin)
+
+    def _leaves(self, origin: Floats | None) -> Iterable[CompiledSpace]:
+        """Yield the compiled members, and those of members that are unions themselves."""
+        for member in self.members:
+            if isinstance(member, UnionSpace):
+                yield from member._leaves(origin)
+            else:
+                yield member.compiled_at(origin)
+
     def covers_box(self, lower: Floats, upper: Floats) -> bool:
-        """Say whether one of the parts is known to."""
+        """Return whether one of the members is known to cover a box."""
         return any(member.covers_box(lower, upper) for member in self.members)
 
     def why_not_free(self, point: ArrayLike) -> str:
-        """Say in words why ``point`` (dim,) is not free."""
+        """Return in words why ``point`` (dim,) is not free."""
         reasons = '; '.join(member.why_not_free(point) for member in self.members)
         return f'in none of the {len(self.members)} members of the union: {reasons}'
 
 
-def _joined(leaves: Iterable[Any], max_gap: float) -> Any:
-    """Return compiled parts as one, with convex pieces of a kind in the same arrays."""
-    kinds: dict[Any, list[Any]] = {}
+def _joined(leaves: Iterable[CompiledSpace], max_gap: float) -> CompiledSpace:
+    """Return compiled spaces as one, with convex pieces of a kind in the same arrays."""
+    kinds: dict[Any, list[CompiledSpace]] = {}
     for leaf in leaves:
-        # Those that cannot be packed stay alone.
+        # What cannot be packed is a kind of its own.
         kinds.setdefault(type(leaf) if is_convex(leaf) else id(leaf), []).append(leaf)
     packed = [pack(kind, max_gap) if is_convex(kind[0]) else kind[0] for kind in kinds.values()]
     return reduce(lambda one, other: UnionData(one, other, max_gap), packed)
 
 
+first_exit_on_curve.register(UnionData)(first_exit_between_surfaces)
+
+
 @contains.register(UnionData)
 @kernel
 def _contains(union, x):
+    """Return whether one of the two contains ``x``."""
     return contains(union.one, x) or contains(union.other, x)
 
 
 @touches.register(UnionData)
 @kernel
 def _touches(union, x):
+    """Return whether the closure of one of the two contains ``x``."""
     return touches(union.one, x) or touches(union.other, x)
 
 
 @first_exit.register(UnionData)
 @kernel
-def _first_exit(union, x, u, t, enough):
-    """Go to the end of a part that holds the line at ``t``, and on in one that reaches on."""
-    s = max(first_exit(union.one, x, u, t, enough), first_exit(union.other, x, u, t, enough))
+def _first_exit(union, x, u, t, horizon):
+    """Go to the end of a member that contains the line at ``t``, and on while one continues."""
+    s = max(first_exit(union.one, x, u, t, horizon), first_exit(union.other, x, u, t, horizon))
     if s == t:
         return t
     max_gap = union.max_gap / norm(u)
     before = t
-    while before < s <= enough:
+    while before < s <= horizon:
         before, probe = s, s + max_gap
         for end in (
-            first_exit(union.one, x, u, probe, enough),
-            first_exit(union.other, x, u, probe, enough),
+            first_exit(union.one, x, u, probe, horizon),
+            first_exit(union.other, x, u, probe, horizon),
         ):
             if end > probe:
                 s = max(s, end)
@@ -133,4 +166,20 @@ def _first_exit(union, x, u, t, enough):
 @first_entry.register(UnionData)
 @kernel
 def _first_entry(union, x, u, t):
+    """Return where the line touches the first of the two."""
     return min(first_entry(union.one, x, u, t), first_entry(union.other, x, u, t))
+
+
+@add_crossings.register(UnionData)
+@kernel
+def _add_crossings(union, curve, end, crossings, n):
+    """Add the crossings of both."""
+    n = add_crossings(union.one, curve, end, crossings, n)
+    return add_crossings(union.other, curve, end, crossings, n)
+
+
+@max_gap_of.register(UnionData)
+@kernel
+def _max_gap_of(union):
+    """Return the longest gap that closes between the two, or in one of them."""
+    return max(union.max_gap, max(max_gap_of(union.one), max_gap_of(union.other)))

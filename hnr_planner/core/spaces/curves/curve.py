@@ -1,11 +1,11 @@
 """
 Curves that a robot follows, and where they leave a space.
 
-Under constant controls a robot runs along a parabola or an arc. Each coordinate of such a curve is
-a function of one parameter for which everything that contact asks is closed form: its value, where
-it turns, and where it reaches a value before it turns. So the first contact with a boundary is
-found as a root, never by stepping along. Each kind of compiled space that can answer registers a
-kernel for ``first_exit_on_curve``.
+Under constant controls a robot moves along a parabola or an arc. Each coordinate of such a curve
+is a function of one parameter for which everything that contact needs has a closed form: its
+value, where it turns, and where it reaches a value before it turns. So the first contact with a
+boundary is found as a root, never by small steps. A compiled space for which that is known
+registers a kernel for ``first_exit_on_curve`` in the module of its space.
 """
 
 import math
@@ -14,9 +14,9 @@ from typing import Any, NamedTuple
 from hnr_planner.core.checks import Floats
 from hnr_planner.core.kernels.dispatch import dispatched
 from hnr_planner.core.kernels.kernel import kernel
-from hnr_planner.core.spaces.primitives import contains
+from hnr_planner.core.spaces.primitives import CompiledSpace, contains
 
-#: A turning point of an arc nearer than this part of half a circle is the one just passed.
+#: A turning point of an arc nearer than this fraction of half a circle is the one just passed.
 SAME_TURN = 1e-9
 
 
@@ -29,8 +29,8 @@ def coordinate(curve: Any, i: int) -> Any:
 
 @dispatched
 @kernel
-def along(curve: Any, normal: Any) -> Any:
-    """Return the coordinate of a curve along a unit vector ``normal`` (dim,), likewise."""
+def along(curve: Any, normal: Floats) -> Any:
+    """Return the coordinate along a unit vector ``normal`` (dim,), as a function as well."""
     raise NotImplementedError
 
 
@@ -51,21 +51,21 @@ def turn(f: Any, t: float) -> float:
 @dispatched
 @kernel
 def reach(f: Any, value: float, t: float) -> float:
-    """Return where a coordinate has ``value``, between ``t`` and its next turn; inf for never."""
+    """Return where a coordinate has ``value``, between ``t`` and its next turn; inf for none."""
     raise NotImplementedError
 
 
 @dispatched
 @kernel
-def first_exit_on_curve(space: Any, curve: Any, end: float) -> float:
+def first_exit_on_curve(space: CompiledSpace, curve: Any, end: float) -> float:
     """Return the first parameter in [0, ``end``] at which a curve is not free; inf for none."""
     raise NotImplementedError
 
 
-def knows_curves(data: Any) -> bool:
-    """Say whether it is known where curves leave a compiled space, and all that it is made of."""
-    parts = [part for part in data if contains.knows(part)]
-    return first_exit_on_curve.knows(data) and all(map(knows_curves, parts))
+def knows_curves(data: CompiledSpace) -> bool:
+    """Return whether ``first_exit_on_curve`` is known for a compiled space and all nested ones."""
+    nested = [field for field in data if contains.knows(field)]
+    return first_exit_on_curve.knows(data) and all(map(knows_curves, nested))
 
 
 class Parabola(NamedTuple):
@@ -103,18 +103,21 @@ class Winding(NamedTuple):
 @coordinate.register(Parabola)
 @kernel
 def _parabola_coordinate(curve, i):
+    """Return coordinate ``i`` of a parabola."""
     return Quadratic(curve.position[i], curve.velocity[i], curve.acceleration[i])
 
 
 @coordinate.register(Arc)
 @kernel
 def _arc_coordinate(curve, i):
+    """Return coordinate ``i`` of an arc: y is x as seen from a quarter of a turn on."""
     return Winding(curve.position[i], curve.heading - i * (math.pi / 2.0), curve.curvature)
 
 
 @along.register(Parabola)
 @kernel
 def _parabola_along(curve, normal):
+    """Project the three vectors of a parabola on ``normal``."""
     x, v, a = 0.0, 0.0, 0.0
     for i in range(len(normal)):
         x += normal[i] * curve.position[i]
@@ -126,6 +129,7 @@ def _parabola_along(curve, normal):
 @along.register(Arc)
 @kernel
 def _arc_along(curve, normal):
+    """Count the heading of an arc from the direction of ``normal``."""
     start = normal[0] * curve.position[0] + normal[1] * curve.position[1]
     return Winding(start, curve.heading - math.atan2(normal[1], normal[0]), curve.curvature)
 
@@ -133,12 +137,14 @@ def _arc_along(curve, normal):
 @at.register(Quadratic)
 @kernel
 def _quadratic_at(f, t):
+    """Evaluate a quadratic at ``t``."""
     return f.start + t * (f.slope + t * (f.change / 2.0))
 
 
 @turn.register(Quadratic)
 @kernel
 def _quadratic_turn(f, t):
+    """Return the vertex of a quadratic where it lies after ``t``."""
     turn = -f.slope / f.change if f.change != 0.0 else math.inf
     return turn if turn > t else math.inf
 
@@ -146,7 +152,7 @@ def _quadratic_turn(f, t):
 @reach.register(Quadratic)
 @kernel
 def _quadratic_reach(f, value, t):
-    """Solve for the way from ``t`` on, in the form that subtracts nothing."""
+    """Solve for the parameter from ``t`` on, in the form without cancellation."""
     slope, away = f.slope + f.change * t, value - _quadratic_at(f, t)
     if away == 0.0:
         return t
@@ -159,7 +165,7 @@ def _quadratic_reach(f, value, t):
 @at.register(Winding)
 @kernel
 def _winding_at(f, s):
-    """Go along the chord: its length is that of the arc times sin(h) / h, its angle the mean."""
+    """Move along the chord: its length is that of the arc times sin(h) / h, its angle the mean."""
     half = f.curvature * s / 2.0
     shrink = math.sin(half) / half if half != 0.0 else 1.0
     return f.start + s * shrink * math.cos(f.angle + half)
@@ -168,6 +174,7 @@ def _winding_at(f, s):
 @turn.register(Winding)
 @kernel
 def _winding_turn(f, s):
+    """Return the next point of the arc at which the coordinate's slope is 0."""
     if f.curvature == 0.0:
         return math.inf
     turns = (f.angle + f.curvature * s) / math.pi - 0.5
@@ -180,7 +187,7 @@ def _winding_turn(f, s):
 @reach.register(Winding)
 @kernel
 def _winding_reach(f, value, s):
-    """Solve for tan(h), where h is half the angle turned from ``s`` on: a quadratic as above."""
+    """Solve a quadratic for tan(h), where h is half the angle turned from ``s`` on."""
     angle, away = f.angle + f.curvature * s, value - _winding_at(f, s)
     if away == 0.0:
         return s
@@ -197,12 +204,6 @@ def _winding_reach(f, value, s):
 
 @kernel
 def point_at(curve, t, x):
-    """Write the point of a curve at ``t``."""
+    """Write the point of a curve at ``t`` to ``x`` (dim,)."""
     for i in range(len(x)):
         x[i] = at(coordinate(curve, i), t)
-
-
-@kernel
-def leave_curve_from(space, curve, end):
-    """Return what ``first_exit_on_curve`` does, for Python."""
-    return first_exit_on_curve(space, curve, end)

@@ -1,9 +1,10 @@
 """
-Where polynomials change their sign, in order: found between the turns that come one after another.
+Sign changes of polynomials, in order.
 
-Between two turns of a polynomial its sign changes at most once, and its turns are the sign changes
-of its derivative: so from the last derivative, which is linear, one goes up to the polynomial.
-Every change is closed in by halving, which no coefficient can lead astray.
+Between two turning points of a polynomial its sign changes at most once, and its turning points
+are the sign changes of its derivative. So the sign changes are found from the last derivative,
+which is linear, up to the polynomial itself. Every change is located by bisection, which converges
+whatever the coefficients.
 """
 
 import math
@@ -11,13 +12,13 @@ import math
 from hnr_planner.core.kernels.kernel import kernel
 import numpy as np
 
-#: Halvings of the way between two turns: to the last bit, unless the change is next to nothing.
+#: Bisections between two turning points: to the last bit, unless the interval is minute.
 HALVINGS = 80
 
 
 @kernel
 def value(coefficients, s):
-    """Value at ``s`` of the polynomial with these coefficients, that of 1 first."""
+    """Evaluate at ``s`` the polynomial with these coefficients, the constant one first."""
     total = 0.0
     for k in range(len(coefficients) - 1, -1, -1):
         total = total * s + coefficients[k]
@@ -27,11 +28,11 @@ def value(coefficients, s):
 @kernel
 def next_change(coefficients, first, last, closed, rounding):
     """
-    Return the first parameter after ``first`` at which being in ends or begins; inf for none.
+    Return the first parameter after ``first`` at which the line leaves or enters; inf for none.
 
-    Where the polynomial is below 0 is in, and also where it is 0 when ``closed``. The parameter is
-    at most ``last``, and the first number on the other side. A turn no higher or deeper than
-    ``rounding`` touches 0.
+    The line is inside where the polynomial is below 0, and also where it is 0 when ``closed``. The
+    parameter is at most ``last``, and the first number on the other side. A turning point whose
+    value is within ``rounding`` of 0 touches 0.
     """
     order = len(coefficients) - 1
     derivative, turns, n_turns = np.empty(order + 1), np.empty(order), 0
@@ -57,7 +58,7 @@ def next_change(coefficients, first, last, closed, rounding):
 
 @kernel
 def _changes(coefficients, first, last, turns, n_turns):
-    """Replace the turns of a polynomial by its changes of sign; return how many there are."""
+    """Replace the turning points of a polynomial by its sign changes; return their number."""
     before, n = first, 0
     for k in range(n_turns + 1):
         after = turns[k] if k < n_turns else last
@@ -70,7 +71,7 @@ def _changes(coefficients, first, last, turns, n_turns):
 
 @kernel
 def _change(coefficients, before, after, closed):
-    """Close in on the only change between two parameters, to the number after it."""
+    """Bisect for the only change between two parameters; return the number after it."""
     was_in = _is_in(coefficients, before, closed)
     for _ in range(HALVINGS):
         middle = before + (after - before) / 2.0
@@ -85,5 +86,6 @@ def _change(coefficients, before, after, closed):
 
 @kernel
 def _is_in(coefficients, s, closed):
+    """Return whether the polynomial is below 0 at ``s``, or 0 when ``closed``."""
     height = value(coefficients, s)
     return height < 0.0 or (closed and height == 0.0)

@@ -1,68 +1,60 @@
 """
-Where a curve leaves a space that planes and spheres bound, in any dimension.
+First exit of a curve from a space bounded by planes and spheres, in any dimension.
 
 Whether a point is free changes only where the curve crosses one of those surfaces. So all these
-parameters are found, as roots, and put in order: between two of them the middle stands for all.
-What is composed of such spaces has the surfaces of all its parts. A curve that touches a surface
-and stays on its side is not held up by it.
+parameters are found, as roots, and sorted: between two of them the middle decides for all. A space
+composed of such spaces has the surfaces of all its members. A curve that touches a surface and
+stays on its side is not stopped by it.
+
+A compiled space registers ``add_crossings``, ``max_gap_of`` where gaps close in it, and
+``first_exit_between_surfaces`` for ``first_exit_on_curve``.
 """
 
 import math
 from typing import Any
 
+from hnr_planner.core.checks import Floats
 from hnr_planner.core.kernels.dispatch import dispatched
 from hnr_planner.core.kernels.kernel import kernel
-from hnr_planner.core.spaces.ball import BallData
-from hnr_planner.core.spaces.box import BoxData
-from hnr_planner.core.spaces.curves.curve import (
-    along,
-    Arc,
-    coordinate,
-    first_exit_on_curve,
-    Parabola,
-    point_at,
-    reach,
-    turn,
-)
+from hnr_planner.core.spaces.curves.curve import along, Arc, Parabola, point_at, reach, turn
 from hnr_planner.core.spaces.curves.polynomials import next_change
-from hnr_planner.core.spaces.difference import DifferenceData
-from hnr_planner.core.spaces.polygon.edges import PolygonData
-from hnr_planner.core.spaces.polytope.polytope_space import PolytopeData
-from hnr_planner.core.spaces.primitives import contains
-from hnr_planner.core.spaces.union import UnionData
+from hnr_planner.core.spaces.primitives import CompiledSpace, contains
 import numpy as np
 
-#: Room for marks at first.
+#: Crossings for which there is memory at first.
 ROOM = 64
+#: Parts of a curve shorter than this fraction of its coordinates are rounding.
+ROUNDING = 1e-15
 
 
 @dispatched
 @kernel
-def mark(space: Any, curve: Any, end: float, marks: Any, n: int) -> int:
+def add_crossings(space: CompiledSpace, curve: Any, end: float, crossings: Floats, n: int) -> int:
     """
     Write the parameters in [0, ``end``] at which the curve meets a surface of ``space``.
 
-    They go to ``marks`` from index ``n`` on, as far as there is room; returns how many there are
-    with those before.
+    They go to ``crossings`` from index ``n`` on, as far as there is room. Returns ``n`` plus their
+    number.
     """
     raise NotImplementedError
 
 
 @dispatched
 @kernel
-def slack(space: Any) -> float:
-    """Return what may lie between two parts of ``space`` for a curve to pass."""
+def max_gap_of(space: CompiledSpace) -> float:
+    """Return the length of the longest gap between two members that a curve passes."""
     return 0.0
 
 
 @kernel
-def _leave_curve(space, curve, end):
-    marks = np.empty(ROOM)
-    n = mark(space, curve, end, marks, 0)
-    if n > len(marks):
-        marks = np.empty(n)
-        mark(space, curve, end, marks, 0)
-    marks = np.sort(marks[:n])
+def first_exit_between_surfaces(space, curve, end):
+    """Return the first crossing after which the curve is not free; see ``first_exit_on_curve``."""
+    crossings = np.empty(ROOM)
+    n = add_crossings(space, curve, end, crossings, 0)
+    if n > len(crossings):
+        crossings = np.empty(n)
+        add_crossings(space, curve, end, crossings, 0)
+    crossings = np.sort(crossings[:n])
     dim = len(curve.position)
     x, y = np.empty(dim), np.empty(dim)
     point_at(curve, 0.0, x)
@@ -70,35 +62,35 @@ def _leave_curve(space, curve, end):
         return 0.0
     before = 0.0
     for k in range(n + 1):
-        after = marks[k] if k < n else end
+        after = crossings[k] if k < n else end
         point_at(curve, after, y)
         point_at(curve, (before + after) / 2.0, x)
-        if not contains(space, x) and not _is_small(curve, before, y, x, slack(space)):
+        if not contains(space, x) and not _is_in_gap(curve, before, y, x, max_gap_of(space)):
             return before
         before = after
     return math.inf if contains(space, y) else end
 
 
 @kernel
-def _is_small(curve, before, end, middle, gap):
-    """Say whether a part of a curve, on its way through ``middle``, is no longer than a gap."""
-    squared, rounding = 0.0, gap
+def _is_in_gap(curve, before, end, middle, max_gap):
+    """Return whether a piece of a curve from ``middle`` to ``end`` is half a gap at most."""
+    squared, longest = 0.0, max_gap
     for i in range(len(end)):
         squared += (end[i] - middle[i]) ** 2
-        rounding = max(rounding, 1e-15 * abs(end[i]))
-    return 2.0 * math.sqrt(squared) <= rounding
+        longest = max(longest, ROUNDING * abs(end[i]))
+    return 2.0 * math.sqrt(squared) <= longest
 
 
 @kernel
-def _mark_value(f, value, end, marks, n):
-    """Write where a coordinate has a value; likewise."""
+def add_level_crossings(f, level, end, crossings, n):
+    """Add the parameters in [0, ``end``] at which a coordinate ``f`` has the value ``level``."""
     t = 0.0
     while t < end:
         piece_end = min(end, turn(f, t))
-        met = reach(f, value, t)
+        met = reach(f, level, t)
         if t <= met <= piece_end:
-            if n < len(marks):
-                marks[n] = met
+            if n < len(crossings):
+                crossings[n] = met
             n += 1
         t = piece_end
     return n
@@ -106,15 +98,17 @@ def _mark_value(f, value, end, marks, n):
 
 @dispatched
 @kernel
-def mark_sphere(curve: Any, centre: Any, radius: float, end: float, marks: Any, n: int) -> int:
-    """Write where a curve meets a sphere; likewise."""
+def add_sphere_crossings(
+    curve: Any, centre: Floats, radius: float, end: float, crossings: Floats, n: int
+) -> int:
+    """Add the parameters in [0, ``end``] at which a curve meets a sphere."""
     raise NotImplementedError
 
 
-@mark_sphere.register(Parabola)
+@add_sphere_crossings.register(Parabola)
 @kernel
-def _mark_sphere_on_parabola(curve, centre, radius, end, marks, n):
-    """Find the changes of |x + v t + a t^2 / 2 - c|^2 - r^2, of order four."""
+def _add_sphere_crossings_of_parabola(curve, centre, radius, end, crossings, n):
+    """Find the sign changes of |x + v t + a t^2 / 2 - c|^2 - r^2, of order four."""
     c = np.zeros(5)
     c[0] = -radius * radius
     for i in range(len(centre)):
@@ -126,26 +120,26 @@ def _mark_sphere_on_parabola(curve, centre, radius, end, marks, n):
         c[4] += a * a / 4.0
     t = next_change(c, 0.0, end, False, 0.0)
     while t < math.inf:
-        if n < len(marks):
-            marks[n] = t
+        if n < len(crossings):
+            crossings[n] = t
         n += 1
         t = next_change(c, t, end, False, 0.0)
     return n
 
 
-@mark_sphere.register(Arc)
+@add_sphere_crossings.register(Arc)
 @kernel
-def _mark_sphere_on_arc(curve, centre, radius, end, marks, n):
+def _add_sphere_crossings_of_arc(curve, centre, radius, end, crossings, n):
     """
-    Take the sphere for the line on which it meets the circle of the arc.
+    Intersect the arc with the line on which its circle meets the sphere.
 
-    With m the middle of that circle and R its radius, |x - c|^2 = R^2 + |m - c|^2 + 2 (x - m)
+    With m the centre of that circle and R its radius, |x - c|^2 = R^2 + |m - c|^2 + 2 (x - m)
     (m - c): constant along lines across m - c.
     """
     if curve.curvature == 0.0:
         direction = np.array([math.cos(curve.heading), math.sin(curve.heading)])
         line = Parabola(curve.position, direction, np.zeros(2))
-        return _mark_sphere_on_parabola(line, centre, radius, end, marks, n)
+        return _add_sphere_crossings_of_parabola(line, centre, radius, end, crossings, n)
     own = 1.0 / curve.curvature
     m = np.array(
         [
@@ -154,89 +148,16 @@ def _mark_sphere_on_arc(curve, centre, radius, end, marks, n):
         ]
     )
     normal = m - centre
-    apart = math.hypot(normal[0], normal[1])
-    if apart == 0.0:
+    distance = math.hypot(normal[0], normal[1])
+    if distance == 0.0:
         return n
-    normal /= apart
-    value = normal[0] * m[0] + normal[1] * m[1]
-    value += (radius * radius - own * own - apart * apart) / (2.0 * apart)
-    return _mark_value(along(curve, normal), value, end, marks, n)
+    normal /= distance
+    level = normal[0] * m[0] + normal[1] * m[1]
+    level += (radius * radius - own * own - distance * distance) / (2.0 * distance)
+    return add_level_crossings(along(curve, normal), level, end, crossings, n)
 
 
-@mark.register(BoxData)
 @kernel
-def _mark_boxes(boxes, curve, end, marks, n):
-    for k in range(len(boxes.lower)):
-        for i in range(boxes.lower.shape[1]):
-            f = coordinate(curve, i)
-            n = _mark_value(f, boxes.lower[k, i], end, marks, n)
-            n = _mark_value(f, boxes.upper[k, i], end, marks, n)
-    return n
-
-
-@mark.register(PolytopeData)
-@kernel
-def _mark_polytope(polytope, curve, end, marks, n):
-    for k in range(len(polytope.offsets)):
-        f = along(curve, polytope.normals[k])
-        n = _mark_value(f, polytope.offsets[k], end, marks, n)
-    return n
-
-
-@mark.register(PolygonData)
-@kernel
-def _mark_edges(polygon, curve, end, marks, n):
-    """Take the whole line of each edge: marks that are none do no harm."""
-    normal = np.empty(2)
-    for k in range(len(polygon.edges)):
-        ax, ay, bx, by = polygon.edges[k]
-        length = math.hypot(bx - ax, by - ay)
-        normal[0], normal[1] = (by - ay) / length, (ax - bx) / length
-        value = normal[0] * ax + normal[1] * ay
-        n = _mark_value(along(curve, normal), value, end, marks, n)
-    return n
-
-
-@mark.register(BallData)
-@kernel
-def _mark_balls(balls, curve, end, marks, n):
-    for k in range(len(balls.radii)):
-        n = mark_sphere(curve, balls.centres[k], balls.radii[k], end, marks, n)
-    return n
-
-
-@mark.register(UnionData)
-@kernel
-def _mark_union(union, curve, end, marks, n):
-    n = mark(union.one, curve, end, marks, n)
-    return mark(union.other, curve, end, marks, n)
-
-
-@mark.register(DifferenceData)
-@kernel
-def _mark_difference(difference, curve, end, marks, n):
-    n = mark(difference.base, curve, end, marks, n)
-    return mark(difference.removed, curve, end, marks, n)
-
-
-@slack.register(BoxData)
-@slack.register(BallData)
-@kernel
-def _own_gap(space):
+def own_max_gap(space):
+    """Return the ``max_gap`` of compiled convex pieces: their kernel for ``max_gap_of``."""
     return space.max_gap
-
-
-@slack.register(UnionData)
-@kernel
-def _gap_of_union(union):
-    return max(union.max_gap, max(slack(union.one), slack(union.other)))
-
-
-@slack.register(DifferenceData)
-@kernel
-def _gap_of_base(difference):
-    return slack(difference.base)
-
-
-for data_type in (BoxData, BallData, PolytopeData, PolygonData, UnionData, DifferenceData):
-    first_exit_on_curve.register(data_type)(_leave_curve)

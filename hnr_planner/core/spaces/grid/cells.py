@@ -1,4 +1,4 @@
-"""What the values of an occupancy map say about its cells."""
+"""The values of an occupancy map: which cells are occupied, and which are unknown."""
 
 from typing import Any
 
@@ -10,7 +10,7 @@ Bools = NDArray[np.bool_]
 
 
 def check_cells(cells: ArrayLike) -> NDArray[Any]:
-    """Return ``cells`` (rows, cols) as an array that is not empty, or raise SpaceError."""
+    """Return ``cells`` (rows, cols) as a non-empty array, or raise SpaceError."""
     try:
         array = np.asarray(cells)
     except ValueError:
@@ -30,14 +30,14 @@ def read_blocked(blocked: ArrayLike) -> Bools:
 
 def read_occupancy(data: ArrayLike, occupied_threshold: int, unknown: str) -> tuple[Bools, Bools]:
     """
-    Return the cells (rows, cols) that are occupied, and those that are closed for being unknown.
+    Return the cells (rows, cols) that are occupied, and those that are blocked as unknown.
 
     Values outside 0..100 are unknown, whatever the threshold.
 
     Raises
     ------
     SpaceError
-        When the data is no grid of whole numbers, or a setting is out of its range.
+        When the data is no grid of whole numbers, or an argument is out of its range.
 
     """
     values = check_cells(data)

@@ -1,4 +1,4 @@
-"""Connected parts of a grid: the nearest point of a free one, and a point in each blocked one."""
+"""Components of a grid: the nearest point of a free one, and a point in each blocked one."""
 
 import math
 
@@ -10,12 +10,12 @@ from numpy.typing import NDArray
 
 def island_points(blocked_with_rim: Bools) -> NDArray[np.float64]:
     """
-    Return the centre (k, 2) of a cell of each island, kernel frame.
+    Return the centre (k, 2) of one cell of each island, kernel frame.
 
-    An island is a group of blocked cells connected over edges or corners, between which nothing
-    gets through, that is not connected with the rim.
+    An island is a component of blocked cells, connected over edges or corners since nothing passes
+    between such cells, that does not touch the rim.
     """
-    import cv2  # as in grid_fields
+    import cv2  # only here, as in fields.py
 
     _, labels = cv2.connectedComponents(
         blocked_with_rim.view(np.uint8), connectivity=8, ltype=cv2.CV_32S
@@ -30,9 +30,9 @@ def island_points(blocked_with_rim: Bools) -> NDArray[np.float64]:
 @kernel
 def nearest_in_component(labels, component, target, margin):
     """
-    Find the point of a part nearest to ``target`` (2,): (point (2,), distance), kernel frame.
+    Return the point (2,) of a component nearest to ``target`` (2,), and its distance.
 
-    Free space is open: a nearest point on the rim of a cell is taken ``margin`` inside.
+    Kernel frame. Free space is open: each coordinate is kept ``margin`` inside of its cell.
     """
     rows, columns = labels.shape
     nearest, least = np.empty(2), math.inf

@@ -1,27 +1,27 @@
 """
-Where a curve leaves a grid: cell traversal, exact, along parabolas and arcs.
+First exit of a curve from a grid: exact cell traversal along parabolas and arcs.
 
-Between two turning points both coordinates run one way, so that the curve crosses grid lines in
-the order of their numbers as a ray does: the traversal is the ray's, with roots in place of
-quotients.
+Between two turning points both coordinates are monotone, so that the curve crosses grid lines in
+order, as a ray does: the traversal is the ray's, with roots in place of quotients.
 """
 
 import math
 
 from hnr_planner.core.kernels.kernel import kernel
-from hnr_planner.core.spaces.curves.curve import at, coordinate, first_exit_on_curve, reach, turn
+from hnr_planner.core.spaces.curves.curve import at, coordinate, reach, turn
 from hnr_planner.core.spaces.grid.traversal import (
     first_cell,
-    GridData,
+    is_along_wall,
+    is_corner_blocked,
     is_free,
     LEAST_REACH,
     SKIN,
 )
 
 
-@first_exit_on_curve.register(GridData)
 @kernel
-def _leave_curve(grid, curve, end):
+def first_exit_from_grid(grid, curve, end):
+    """Return what ``first_exit_on_curve`` does, for a compiled grid."""
     free_distance = grid.free_distance
     x, y = coordinate(curve, 0), coordinate(curve, 1)
     if not is_free(free_distance, at(x, 0.0), at(y, 0.0)):
@@ -29,27 +29,23 @@ def _leave_curve(grid, curve, end):
     t = 0.0
     while t < end:
         piece_end = min(end, min(turn(x, t), turn(y, t)))
-        left = _leave_piece(free_distance, x, y, t, piece_end)
-        if left <= piece_end:
-            return left
+        first = _first_exit_of_piece(free_distance, x, y, t, piece_end)
+        if first <= piece_end:
+            return first
         t = piece_end
     return math.inf
 
 
 @kernel
-def _leave_piece(free_distance, x, y, t, end):
-    """Follow a piece that does not turn between ``t`` and ``end``."""
+def _first_exit_of_piece(free_distance, x, y, t, end):
+    """Follow a piece without a turning point from ``t`` to ``end``; inf when it stays free."""
     x_at_t, y_at_t = at(x, t), at(y, t)
     column, column_step, beside_column = first_cell(x_at_t, at(x, end) - x_at_t)
     row, row_step, beside_row = first_cell(y_at_t, at(y, end) - y_at_t)
     s = t
     while True:
         free = int(free_distance[row, column]) - 1
-        along_wall = (
-            free_distance[row, column + beside_column] == 0
-            or free_distance[row + beside_row, column] == 0
-        )
-        if free < 0 or along_wall:
+        if free < 0 or is_along_wall(free_distance, row, column, beside_row, beside_column):
             return max(s, t)
         skips = free >= LEAST_REACH
         s_column = _across(x, t, column, column_step, free if skips else 0, skips)
@@ -61,17 +57,21 @@ def _leave_piece(free_distance, x, y, t, end):
             column = math.floor(at(x, s)) if column_step != 0 else column
             row = math.floor(at(y, s)) if row_step != 0 else row
             continue
-        if s_column == s_row:
-            beside = free_distance[row, column + column_step]
-            if beside == 0 or free_distance[row + row_step, column] == 0:
-                return max(s, t)
+        if s_column == s_row and is_corner_blocked(
+            free_distance, row, column, row_step, column_step
+        ):
+            return max(s, t)
         column += column_step if s_column == s else 0
         row += row_step if s_row == s else 0
 
 
 @kernel
 def _across(f, t, cell, step, free, inside):
-    """Where a coordinate leaves the cells up to ``free`` away, or just before; inf for never."""
+    """
+    Return where a coordinate leaves the cells up to ``free`` away; inf for never.
+
+    When ``inside``, a point just before that, more than rounding away from the grid line.
+    """
     if step == 0:
         return math.inf
     skin = SKIN if inside else 0.0

@@ -1,14 +1,14 @@
 """
-Fields over the cells of a grid, a pass of OpenCV each: inflation, distance, components.
+Fields over the cells of a grid, by one pass of OpenCV each: inflation, distance, components.
 
-OpenCV is imported where it is called: a tenth of a second, which other spaces do without.
+OpenCV is imported where it is called: it takes a tenth of a second that other spaces do not need.
 """
 
 from hnr_planner.core.spaces.grid.cells import Bools
 import numpy as np
 from numpy.typing import NDArray
 
-#: Distances are kept in one byte and end here.
+#: Largest distance: distances are kept in one byte [cells].
 FARTHEST = 255
 
 
@@ -17,7 +17,7 @@ def inflate(occupied: Bools, radius: float) -> Bools:
     Return the cells whose centre is within ``radius`` [cells] of the centre of an occupied one.
 
     Squared offsets between cells are whole numbers, so the limit on the distance is set between
-    two of their roots, where the transform's rounding cannot matter.
+    the roots of two of them, where the rounding of the transform does not matter.
     """
     import cv2
 
@@ -30,16 +30,25 @@ def inflate(occupied: Bools, radius: float) -> Bools:
     return distance < limit
 
 
+def is_inflated(occupied: Bools, row: int, column: int, radius: float) -> bool:
+    """Return whether a cell is within ``radius`` [cells] of an occupied one, as in ``inflate``."""
+    reach = int(min(radius, max(occupied.shape))) + 1
+    top, left = max(row - reach, 0), max(column - reach, 0)
+    bottom, right = row + reach + 1, column + reach + 1
+    window = occupied[top:bottom, left:right]
+    return bool(inflate(window, radius)[row - top, column - left])
+
+
 def free_distance(blocked: Bools, *, closed_rim: bool = True) -> NDArray[np.uint8]:
     """
-    Distance in king's moves from each cell to the nearest blocked one, at most 255.
+    Return the distance in king's moves from each cell to the nearest blocked one, at most 255.
 
     Parameters
     ----------
     blocked : (rows, cols) bool
-        The cells to measure from.
+        The blocked cells.
     closed_rim : bool
-        Whether the rim of one cell that is added all around counts as blocked.
+        Whether the rim of one cell that is added on every side counts as blocked.
 
     Returns
     -------
@@ -58,7 +67,7 @@ def free_distance(blocked: Bools, *, closed_rim: bool = True) -> NDArray[np.uint
 
 
 def components(free: NDArray[np.bool_]) -> NDArray[np.int32]:
-    """Label (rows, cols) the free cells connected over shared edges: 1, 2, …; 0 is not free."""
+    """Return the component (rows, cols) of each free cell, from 1; 0 for blocked cells."""
     import cv2
 
     _, labels = cv2.connectedComponents(free.view(np.uint8), connectivity=4, ltype=cv2.CV_32S)

@@ -1,4 +1,4 @@
-"""Where a grid lies in the map: between metres of the map frame and cells of the kernel frame."""
+"""The frame of a grid: between metres of the map frame and cells of the kernel frame."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -11,17 +11,17 @@ from hnr_planner.core.errors import SpaceError
 from hnr_planner.core.kernels.kernel import kernel
 import numpy as np
 
-#: Coordinates must resolve this part of a cell, or free and blocked cannot be told apart.
+#: Coordinates must resolve this fraction of a cell to distinguish free cells from blocked ones.
 FINEST = 1e-6
 
 
 @dataclass(frozen=True)
 class GridFrame:
     """
-    Frame of a grid: origin and yaw are applied here and nowhere else.
+    The frame of a grid: origin and yaw are applied here and nowhere else.
 
-    The kernel frame has one unit for one cell. It starts one cell before the grid, at the corner
-    of a rim of blocked cells, so that every ray ends inside the arrays.
+    One unit of the kernel frame is one cell. The frame starts one cell before the grid, at the
+    corner of a rim of blocked cells, so that every ray ends inside the arrays.
 
     Attributes
     ----------
@@ -44,8 +44,12 @@ class GridFrame:
     def checked(
         cls, resolution: float, origin: Iterable[float], shape: tuple[int, ...]
     ) -> 'GridFrame':
-        """Build a frame from a caller's numbers, or raise SpaceError naming the wrong one."""
-        resolution = check_real('resolution', resolution, SpaceError)
+        """
+        Build a frame from a caller's numbers, or raise SpaceError that names the wrong one.
+
+        A resolution that came from a single-precision message is taken as the decimal it means.
+        """
+        resolution = decimal(check_real('resolution', resolution, SpaceError))
         if not 0.0 < resolution < math.inf:
             raise SpaceError(f'resolution must be above 0 and finite, got {resolution!r}')
         try:
@@ -64,7 +68,7 @@ class GridFrame:
 
     @cached_property
     def rounding(self) -> float:
-        """Spacing of the floating-point numbers at the far end of the map, in cells."""
+        """Spacing of floating-point numbers at the far end of the map, in cells."""
         extent = math.hypot(*self.shape) * self.resolution
         farthest = max(abs(self.origin[0]), abs(self.origin[1])) + extent
         return float(np.spacing(farthest)) / self.resolution
@@ -78,43 +82,56 @@ class GridFrame:
 
     @cached_property
     def _turn(self) -> tuple[float, float]:
-        """Cosine and sine of the yaw, exact for none."""
+        """Cosine and sine of the yaw, exact for a yaw of 0."""
         return math.cos(self.origin[2]), math.sin(self.origin[2])
 
     @cached_property
     def to_cells(self) -> tuple[Floats, Floats]:
-        """Matrix (2, 2) and offset (2,) that bring a point of the map frame into this one."""
+        """Matrix (2, 2) and offset (2,) that convert a point of the map frame into this one."""
         cos, sin = self._turn
         matrix = np.array([[cos, sin], [-sin, cos]]) / self.resolution
         return matrix, self.RIM - matrix @ np.array(self.origin[:2])
 
     def to_kernel(self, points: Floats) -> Floats:
-        """Bring points (..., 2) [m] of the map frame into the kernel frame."""
+        """Convert points (..., 2) [m] of the map frame to the kernel frame [cells]."""
         x, y, _ = self.origin
         cells = _to_cells(_in_rows(points), x, y, *self._turn, self.resolution, self.RIM)
         return cells.reshape(points.shape)
 
     def from_kernel(self, cells: Floats) -> Floats:
-        """Bring points (..., 2) of the kernel frame into the map frame [m]."""
+        """Convert points (..., 2) of the kernel frame [cells] to the map frame [m]."""
         x, y, _ = self.origin
         points = _from_cells(_in_rows(cells), x, y, *self._turn, self.resolution, self.RIM)
         return points.reshape(cells.shape)
 
     def turn_to_kernel(self, directions: Floats) -> Floats:
-        """Turn directions (..., 2) of the map frame into the grid's frame."""
+        """Rotate directions (..., 2) of the map frame into the kernel frame, unscaled."""
         return _to_cells(_in_rows(directions), 0.0, 0.0, *self._turn, 1.0, 0).reshape(
             directions.shape
         )
 
 
+def decimal(number: float) -> float:
+    """
+    Return the decimal of six digits that a number of single precision stands for.
+
+    A message carries the resolution .05 in single precision, as .05000000074505806, and ratios of
+    such lengths would miss whole numbers. Every decimal of six digits can be told from its value
+    in single precision; all other numbers are returned unchanged.
+    """
+    short = float(f'{number:.6g}')
+    with np.errstate(over='ignore', under='ignore'):
+        return short if float(np.float32(short)) == number else number
+
+
 def _in_rows(points: Floats) -> Floats:
-    """Points (..., 2) as (k, 2), in the order of memory that the kernels are compiled for."""
+    """Return points (..., 2) as (k, 2), in the memory order that kernels are compiled for."""
     return np.ascontiguousarray(points).reshape(-1, 2)
 
 
 @kernel
 def _to_cells(points, x, y, cos, sin, resolution, rim):
-    """Points (k, 2) in the frame at (x, y), turned back by its yaw, in cells beyond the rim."""
+    """Return points (k, 2) in the frame at (x, y) with the given yaw, in cells, plus the rim."""
     cells = np.empty_like(points)
     for k in range(len(points)):
         dx, dy = points[k, 0] - x, points[k, 1] - y
@@ -125,7 +142,7 @@ def _to_cells(points, x, y, cos, sin, resolution, rim):
 
 @kernel
 def _from_cells(cells, x, y, cos, sin, resolution, rim):
-    """Undo ``_to_cells``: points (k, 2) of cells (k, 2)."""
+    """Return the points (k, 2) of cells (k, 2): the inverse of ``_to_cells``."""
     points = np.empty_like(cells)
     for k in range(len(cells)):
         dx, dy = (cells[k, 0] - rim) * resolution, (cells[k, 1] - rim) * resolution

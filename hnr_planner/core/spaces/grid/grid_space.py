@@ -1,27 +1,32 @@
-"""An occupancy grid as a space: what is free, what is connected, how far the walls are."""
+"""An occupancy grid as a space: free points, components, and the distance to walls."""
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Literal
 
 from hnr_planner.core.checks import check_point, check_points, check_real, Floats
 from hnr_planner.core.errors import RequestError, SpaceError
+from hnr_planner.core.spaces.bounds import in_words
 from hnr_planner.core.spaces.clearance import path_clearance, point_clearance
+from hnr_planner.core.spaces.curves.curve import first_exit_on_curve
 from hnr_planner.core.spaces.grid.cells import Bools, read_blocked, read_occupancy
 from hnr_planner.core.spaces.grid.components import island_points, nearest_in_component
-from hnr_planner.core.spaces.grid.fields import components, free_distance, inflate
-from hnr_planner.core.spaces.grid.frame import GridFrame
+from hnr_planner.core.spaces.grid.curves import first_exit_from_grid
+from hnr_planner.core.spaces.grid.fields import components, free_distance, inflate, is_inflated
+from hnr_planner.core.spaces.grid.frame import decimal, GridFrame
 from hnr_planner.core.spaces.grid.lattice import build_lattice, Lattice, rough_path
 from hnr_planner.core.spaces.grid.traversal import GridData
-from hnr_planner.core.spaces.primitives import part_of
+from hnr_planner.core.spaces.primitives import component
 from hnr_planner.core.spaces.space import Space
 from hnr_planner.core.spaces.transformed import TransformedData
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-#: Cells looked at, about, for a mean over all of a map.
+#: Approximate number of cells in the sample for a mean over a map.
 TYPICAL_CELLS = 10_000
+
+first_exit_on_curve.register(GridData)(first_exit_from_grid)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -30,13 +35,13 @@ class GridSpace(Space):
     The free points of an occupancy grid: ``GridSpace.from_occupancy`` or ``.from_blocked``.
 
     Row 0 of every array is the row nearest the origin, points are (x, y) in metres in the map
-    frame, and the grid's frame lies in it at ``origin`` (x, y, yaw). Blocked cells are closed and
+    frame, and ``origin`` is the pose (x, y, yaw) of the grid in it. Blocked cells are closed and
     everything outside the grid is blocked.
 
     Attributes
     ----------
     frame : GridFrame
-        Where the grid lies: resolution and origin.
+        Resolution, origin and shape.
     robot_radius : float
         Radius [m] by which the occupied cells were inflated.
     data : GridData
@@ -46,7 +51,7 @@ class GridSpace(Space):
 
     frame: GridFrame
     robot_radius: float
-    data: GridData
+    data: GridData = field()  # no default: the base class has a property of this name
     _wall_distance: NDArray[np.uint8]
 
     dim = 2
@@ -70,7 +75,8 @@ class GridSpace(Space):
         data : (rows, cols) integers
             Occupancy: 0..100, -1 for unknown; values outside -1..100 count as unknown.
         resolution : float
-            Side of a cell [m].
+            Side of a cell [m]. A number of single precision, as a message carries it, is taken as
+            the decimal that it stands for.
         origin : (x, y, yaw)
             Pose of the outer corner of cell [0, 0] in the map frame [m, m, rad].
         robot_radius : float
@@ -79,7 +85,7 @@ class GridSpace(Space):
         occupied_threshold : int
             Cells of at least this value, 1..100, are occupied.
         unknown : 'blocked' or 'free'
-            What unknown cells are.
+            Whether unknown cells block or are free.
 
         Raises
         ------
@@ -99,7 +105,26 @@ class GridSpace(Space):
         *,
         robot_radius: float = 0.0,
     ) -> 'GridSpace':
-        """Build the space whose occupied cells are ``blocked`` (rows, cols) bool; see above."""
+        """
+        Build the space whose occupied cells are ``blocked``.
+
+        Parameters
+        ----------
+        blocked : (rows, cols) bool
+            The occupied cells.
+        resolution : float
+            Side of a cell [m].
+        origin : (x, y, yaw)
+            Pose of the outer corner of cell [0, 0] in the map frame [m, m, rad].
+        robot_radius : float
+            Radius [m] by which the occupied cells are inflated, as in ``from_occupancy``.
+
+        Raises
+        ------
+        SpaceError
+            When one of the arguments describes no grid; the message names it.
+
+        """
         occupied = read_blocked(blocked)
         return cls._build(occupied, np.zeros_like(occupied), resolution, origin, robot_radius)
 
@@ -112,8 +137,9 @@ class GridSpace(Space):
         origin: Iterable[float],
         radius: float,
     ) -> 'GridSpace':
+        """Check what all constructors take, inflate the occupied cells and label components."""
         frame = GridFrame.checked(resolution, origin, occupied.shape)
-        radius = check_real('robot_radius', radius, SpaceError)
+        radius = decimal(check_real('robot_radius', radius, SpaceError))
         if not 0.0 <= radius < np.inf:
             raise SpaceError(f'robot_radius must be at least 0 and finite, got {radius!r}')
         distance = free_distance(inflate(occupied, radius / frame.resolution) | closed)
@@ -124,7 +150,14 @@ class GridSpace(Space):
             _wall_distance=free_distance(occupied, closed_rim=False),
         )
 
-    # -- where it lies ---------------------------------------------------------------------------
+    def __repr__(self) -> str:
+        """Name the size, the frame and the robot's radius."""
+        return (
+            f'GridSpace(shape={self.shape}, resolution={self.resolution:g}, '
+            f'origin={in_words(np.array(self.origin))}, robot_radius={self.robot_radius:g})'
+        )
+
+    # -- frame -----------------------------------------------------------------------------------
 
     @property
     def shape(self) -> tuple[int, int]:
@@ -141,10 +174,17 @@ class GridSpace(Space):
         """Pose (x, y, yaw) of the grid in the map frame [m, m, rad]."""
         return self.frame.origin
 
+    def compiled_at(self, origin: Floats | None) -> TransformedData:
+        """Return the compiled grid in the map frame moved to ``origin`` (2,); None for 0."""
+        matrix, offset = self.frame.to_cells
+        if origin is not None:
+            offset = self.frame.to_kernel(origin)
+        return TransformedData(self.data, matrix, offset)
+
     @cached_property
     def compiled(self) -> TransformedData:
         """The compiled grid in the map frame."""
-        return TransformedData(self.data, *self.frame.to_cells)
+        return self.compiled_at(None)
 
     @property
     def scale(self) -> float:
@@ -164,7 +204,7 @@ class GridSpace(Space):
 
     @cached_property
     def margin(self) -> float:
-        """Distance from a chord's end at which one stops, never below what coordinates resolve."""
+        """Distance from a chord's end at which one stops, never less than coordinates resolve."""
         return max(super().margin, 8.0 * self.frame.rounding)
 
     @cached_property
@@ -176,23 +216,23 @@ class GridSpace(Space):
         return float(free.mean()) if free.size else 1.0
 
     def to_kernel(self, points: Floats) -> Floats:
-        """Bring points (..., 2) [m] of the map frame into cells of the kernel frame."""
+        """Convert points (..., 2) [m] of the map frame to the kernel frame [cells]."""
         return self.frame.to_kernel(points)
 
     def from_kernel(self, points: Floats) -> Floats:
-        """Bring points (..., 2) in cells of the kernel frame into the map frame [m]."""
+        """Convert points (..., 2) of the kernel frame [cells] to the map frame [m]."""
         return self.frame.from_kernel(points)
 
     def turn_to_kernel(self, directions: Floats) -> Floats:
-        """Turn directions (..., 2) of the map frame into the grid's."""
+        """Rotate directions (..., 2) of the map frame into the kernel frame, unscaled."""
         return self.frame.turn_to_kernel(directions)
 
     def cell_centres(self, rows: ArrayLike, columns: ArrayLike) -> Floats:
-        """Centres (k, 2) [m] of the cells at ``rows`` and ``columns`` (k,), in the map frame."""
+        """Return the centres (k, 2) [m] of cells at ``rows`` and ``columns`` (k,), map frame."""
         cells = np.stack([np.asarray(columns), np.asarray(rows)], axis=-1)
         return self.frame.from_kernel(cells + (self.frame.RIM + 0.5))
 
-    # -- what is free ----------------------------------------------------------------------------
+    # -- free points -----------------------------------------------------------------------------
 
     @property
     def blocked(self) -> Bools:
@@ -205,13 +245,13 @@ class GridSpace(Space):
         return self._wall_distance[1:-1, 1:-1] == 0
 
     def reaches_to(self, point: ArrayLike) -> bool:
-        """Say whether ``point`` (2,) [m] lies on the map, its edge included."""
+        """Return whether ``point`` (2,) [m] lies on the map, its edge included."""
         x, y = self.frame.to_kernel(check_point('point', point, 2)) - self.frame.RIM
         rows, columns = self.shape
         return bool(0.0 <= x <= columns and 0.0 <= y <= rows)
 
     def why_not_free(self, point: ArrayLike) -> str:
-        """Say in words why ``point`` (2,) [m] is not free."""
+        """Return in words why ``point`` (2,) [m] is not free."""
         x, y = self.frame.to_kernel(check_point('point', point, 2)) - self.frame.RIM
         rows, columns = self.shape
         if not (0 < x < columns and 0 < y < rows):
@@ -221,41 +261,37 @@ class GridSpace(Space):
                 f'{where} the map, which spans '
                 f'x {lower[0]:g}..{upper[0]:g}, y {lower[1]:g}..{upper[1]:g} m'
             )
-        row, column = int(y), int(x)
+        return self._why_not_free_in_cell(int(y), int(x))
+
+    def _why_not_free_in_cell(self, row: int, column: int) -> str:
+        """Return in words why a point in cell [row, column] is not free."""
         cell = f'cell [{row}, {column}]'
         if self.occupied[row, column]:
             return f'inside an obstacle: {cell} is occupied'
         if not self.blocked[row, column]:
             return f'on the edge of a blocked cell beside {cell}'
-        if self._is_near_wall(row, column):
+        if is_inflated(self.occupied, row, column, self.robot_radius / self.resolution):
             return f'within the robot radius of {self.robot_radius:g} m of an obstacle, in {cell}'
         return f'in unknown space: {cell} is unknown'
 
-    def _is_near_wall(self, row: int, column: int) -> bool:
-        reach = int(min(self.robot_radius / self.resolution, max(self.shape))) + 1
-        top, left = max(row - reach, 0), max(column - reach, 0)
-        bottom, right = row + reach + 1, column + reach + 1
-        window = self.occupied[top:bottom, left:right]
-        return bool(inflate(window, self.robot_radius / self.resolution)[row - top, column - left])
-
-    # -- what is connected -----------------------------------------------------------------------
+    # -- components ------------------------------------------------------------------------------
 
     def connected(self, a: ArrayLike, b: ArrayLike) -> bool:
         """
-        Say whether a path joins two free points, exactly.
+        Return whether a path joins two free points, exactly.
 
         Free cells that share an edge are connected; those that share only a corner are not, since
         the corner touches the two obstacles beside it.
         """
-        component = self._component(check_point('a', a, 2))
-        return component != 0 and component == self._component(check_point('b', b, 2))
+        label = self._component(check_point('a', a, 2))
+        return label != 0 and label == self._component(check_point('b', b, 2))
 
     def region_reachable(self, start: ArrayLike, goal: ArrayLike, radius: float) -> bool:
-        """Say whether a path leads from ``start`` to within ``radius`` [m] of ``goal``."""
+        """Return whether a path leads from ``start`` to within ``radius`` [m] of ``goal``."""
         return self.nearest_reachable(start, goal, radius) is not None
 
     def largest_component(self) -> Bools:
-        """Return the cells (rows, cols) of the largest connected part of free space."""
+        """Return the cells (rows, cols) bool of the largest component of free space."""
         labels = self.data.labels[1:-1, 1:-1]
         sizes = np.bincount(labels.ravel())
         sizes[0] = 0
@@ -267,11 +303,11 @@ class GridSpace(Space):
 
         Free space is open, so a nearest point on the rim of a cell is taken ``margin`` inside.
         """
-        component = self._component(check_point('start', start, 2))
+        label = self._component(check_point('start', start, 2))
         target = self.frame.to_kernel(check_point('goal', goal, 2))
-        if component == 0:
+        if label == 0:
             return None
-        nearest, offset = nearest_in_component(self.data.labels, component, target, self.margin)
+        nearest, offset = nearest_in_component(self.data.labels, label, target, self.margin)
         return self.frame.from_kernel(nearest) if offset <= radius / self.scale else None
 
     def rough_path(self, start: Floats, goal: Floats) -> Floats | None:
@@ -281,19 +317,19 @@ class GridSpace(Space):
 
     @cached_property
     def _lattice(self) -> Lattice:
-        """Built for the first that optimizes: it takes as long as half of the rest of the map."""
+        """Built when first used: it takes half as long as the rest of the map."""
         return build_lattice(self.data)
 
     @cached_property
     def island_points(self) -> Floats:
-        """A point (k, 2) in each blocked part with free cells all around it, kernel frame."""
+        """A point (k, 2) in each blocked component that a path can go round, kernel frame."""
         return island_points(self.data.free_distance == 0)
 
     def _component(self, point: Floats) -> int:
-        """Part of free space that holds a point (2,) [m]: 0 where it is not free."""
-        return int(part_of(self.data, self.frame.to_kernel(point)))
+        """Return the component that holds a point (2,) [m], from 1; 0 where it is not free."""
+        return int(component(self.data, self.frame.to_kernel(point)))
 
-    # -- how far the walls are -------------------------------------------------------------------
+    # -- distance to walls -----------------------------------------------------------------------
 
     @property
     def walls(self) -> NDArray[np.uint8]:
@@ -301,7 +337,7 @@ class GridSpace(Space):
         return self._wall_distance
 
     def clearance(self, points: ArrayLike) -> Floats:
-        """Distance (k,) [m] from points (k, 2) to the nearest occupied square; inf without one."""
+        """Return the distances (k,) [m] from points (k, 2) to occupied squares; inf for none."""
         cells = self.frame.to_kernel(np.atleast_2d(check_points('points', points, 2)))
         return point_clearance(self._wall_distance, cells) * self.scale
 

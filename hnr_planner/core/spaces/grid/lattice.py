@@ -1,9 +1,10 @@
 """
-A coarse lattice over a grid: rough, free paths that take the short way round obstacles.
+A coarse lattice over a grid: rough, free paths that take the short route around obstacles.
 
 The grid is divided into square blocks. A node is the cell of its block that is farthest from the
-walls; the nodes of neighbouring blocks are joined where they see each other. What is found on it
-is free, and goes the right way round nearly always, but wanders: it has to be pulled taut.
+walls; the nodes of neighbouring blocks are joined where the segment between them is free. A path
+on the lattice is free and nearly always of the shortest homotopy class, but longer than need be:
+it has to be shortened.
 """
 
 from heapq import heappop, heappush
@@ -20,18 +21,21 @@ from hnr_planner.core.trees import branch, NONE
 import numpy as np
 from numpy.typing import NDArray
 
-#: Cells along the side of a block, at least; blocks along the longer side of the grid, at most.
+#: Least side of a block [cells].
 SIDE_MIN = 4
+#: Largest number of blocks along the longer side of the grid.
 BLOCKS_MAX = 128
-#: Rings of blocks around a point in which it looks for a node that it sees.
+#: Rings of blocks around a point that are searched for a visible node.
 RINGS = 3
-#: Steps to the blocks around, (rows, columns); the second four lead back.
+#: Steps (rows, columns) to the neighbouring blocks; the second four are the opposite of the first.
 STEPS = ((0, 1), (1, 1), (1, 0), (1, -1), (0, -1), (-1, -1), (-1, 0), (-1, 1))
 
 
 class Lattice(NamedTuple):
     """
-    Nodes and who sees whom, kernel frame; node ``row * columns + column`` is that of its block.
+    Nodes and the edges between them, kernel frame.
+
+    Node ``row * columns + column`` is that of the block (row, column).
 
     Attributes
     ----------
@@ -42,7 +46,7 @@ class Lattice(NamedTuple):
     nodes : (k, 2)
         Centre of the block's most open cell.
     joined : (k, 8) bool
-        Whether the node of the block one of ``STEPS`` away is seen; none where all is blocked.
+        Whether there is an edge to the node of the block one of ``STEPS`` away.
 
     """
 
@@ -61,6 +65,7 @@ def build_lattice(grid: GridData) -> Lattice:
 
 @kernel
 def _joined_nodes(grid, side):
+    """Return the nodes (k, 2) of blocks of ``side`` cells, and the edges (k, 8) bool."""
     grid = borrowed(grid)
     rows, columns = grid.free_distance.shape
     block_rows, block_columns = math.ceil(rows / side), math.ceil(columns / side)
@@ -78,7 +83,7 @@ def _joined_nodes(grid, side):
 
 @kernel
 def _most_open(free_distance, row, column, side, node):
-    """Write the centre of the cell in a block that is farthest from the walls."""
+    """Write to ``node`` (2,) the centre of the cell in a block that is farthest from the walls."""
     rows, columns = free_distance.shape
     farthest = -1
     for i in range(row * side, min((row + 1) * side, rows)):
@@ -90,7 +95,7 @@ def _most_open(free_distance, row, column, side, node):
 
 @kernel
 def _block_at(k, step, columns, n_blocks):
-    """Block one step away, or NONE beyond the grid."""
+    """Return the block one step away from block ``k``, or NONE beyond the grid."""
     down, right = STEPS[step]
     row, column = k // columns + down, k % columns + right
     inside = 0 <= column < columns and 0 <= row < n_blocks // columns
@@ -104,19 +109,19 @@ def rough_path(grid, lattice, start, goal):
     nodes, n = lattice.nodes, len(lattice.nodes)
     length, parents = np.full(n, math.inf), np.full(n, NONE)
     ends, waiting = np.zeros(n, dtype=np.bool_), [(0.0, 0) for _ in range(0)]
-    for k in _seen_nodes(grid, lattice, goal):
+    for k in _visible_nodes(grid, lattice, goal):
         ends[k] = True
-    for k in _seen_nodes(grid, lattice, start):
+    for k in _visible_nodes(grid, lattice, start):
         length[k] = distance(start, nodes[k])
         heappush(waiting, (length[k] + distance(nodes[k], goal), k))
     while len(waiting) > 0:
         least, k = heappop(waiting)
         left = distance(nodes[k], goal)
         if least > length[k] + left:
-            continue  # a shorter way to this node has come by
+            continue  # a shorter path to this node was found since
         if ends[k]:
-            way = branch(nodes, parents, k)
-            return np.concatenate((start.reshape((1, 2)), way, goal.reshape((1, 2))))
+            path = branch(nodes, parents, k)
+            return np.concatenate((start.reshape((1, 2)), path, goal.reshape((1, 2))))
         for step in range(len(STEPS)):
             if lattice.joined[k, step]:
                 near = _block_at(k, step, lattice.columns, n)
@@ -128,17 +133,17 @@ def rough_path(grid, lattice, start, goal):
 
 
 @kernel
-def _seen_nodes(grid, lattice, x):
-    """Nodes that a point sees, of the blocks in the nearest rings that have any."""
+def _visible_nodes(grid, lattice, x):
+    """Return the nodes visible from ``x`` (2,) in the nearest rings of blocks that have any."""
     row, column = int(x[1]) // lattice.side, int(x[0]) // lattice.side
     rows = len(lattice.nodes) // lattice.columns
-    seen = [0 for _ in range(0)]
+    visible = [0 for _ in range(0)]
     for reach in range(1, RINGS + 1):
         for i in range(max(row - reach, 0), min(row + reach + 1, rows)):
             for j in range(max(column - reach, 0), min(column + reach + 1, lattice.columns)):
                 k = i * lattice.columns + j
                 if segment_is_free(grid, x, lattice.nodes[k]):
-                    seen.append(k)
-        if len(seen) > 0:
+                    visible.append(k)
+        if len(visible) > 0:
             break
-    return seen
+    return visible

@@ -1,21 +1,21 @@
 """
-The chord on a grid: cell traversal, exact, with a distance field to skip empty space.
+The chord on a grid: exact cell traversal, with a distance field to skip empty space.
 
 Kernel frame: one unit is one cell, cell (row, column) is the square [column, column + 1] x
 [row, row + 1], x before y. ``free_distance[row, column]`` is the distance in king's moves to the
 nearest blocked cell: 0 for blocked cells, and with ``d`` all cells within ``d - 1`` are free. The
 rim of the array is blocked, so a ray always ends.
 
-The line ``x + s u`` meets the grid line ``X`` at ``s = (X - x) / u``, whatever way led there. A
-skip lands where cell by cell traversal would have come by, so both stop at the same number to the
-last bit. Blocked cells are closed: a ray through a corner needs all four cells free, and one along
-a grid line the cells on both sides.
+The line ``x + s u`` meets the grid line ``X`` at ``s = (X - x) / u``, whichever cells were visited
+before. A skip ends at a point that traversal cell by cell passes too, so both stop at the same
+number to the last bit. Blocked cells are closed: a ray through a corner needs all four cells free,
+and one along a grid line the cells on both sides.
 """
 
 import math
 from typing import NamedTuple
 
-from hnr_planner.core.kernels.kernel import kernel
+from hnr_planner.core.kernels.kernel import inlined, kernel
 from hnr_planner.core.spaces.primitives import (
     component,
     contains,
@@ -27,9 +27,9 @@ from hnr_planner.core.spaces.primitives import (
 import numpy as np
 from numpy.typing import NDArray
 
-#: Skipping costs more than it saves where fewer cells around are free (measured on building maps).
+#: Least number of free cells around from which skipping pays (measured on maps of buildings).
 LEAST_REACH = 2
-#: A skip ends this far inside the free cells, more than coordinates are rounded by [cells].
+#: Distance from the last free cell's side at which a skip ends, more than rounding [cells].
 SKIN = 1e-6
 
 
@@ -42,7 +42,7 @@ class GridData(NamedTuple):
     free_distance : (rows, columns) uint8
         Distance in king's moves to the nearest blocked cell; 0 on the rim.
     labels : (rows, columns) int32
-        Connected part that each free cell belongs to; 0 for blocked cells.
+        Component that each free cell belongs to, from 1; 0 for blocked cells.
 
     """
 
@@ -53,12 +53,13 @@ class GridData(NamedTuple):
 @contains.register(GridData)
 @kernel
 def _contains(grid, x):
+    """Return whether ``x`` (2,) is free."""
     return is_free(grid.free_distance, x[0], x[1])
 
 
 @kernel
 def is_free(free_distance, x, y):
-    """Say whether every cell that touches the point is free."""
+    """Return whether every cell that touches the point is free."""
     rows, columns = free_distance.shape
     if not (0.0 < x < columns and 0.0 < y < rows):
         return False
@@ -76,6 +77,7 @@ def is_free(free_distance, x, y):
 @component.register(GridData)
 @kernel
 def _component(grid, x):
+    """Return the label of the cell at ``x`` (2,); 0 where it is not free."""
     if not is_free(grid.free_distance, x[0], x[1]):
         return 0
     return int(grid.labels[math.floor(x[1]), math.floor(x[0])])
@@ -83,14 +85,15 @@ def _component(grid, x):
 
 @first_exit.register(GridData)
 @kernel
-def _first_exit(grid, x, u, t, enough):
-    return _traverse(grid.free_distance, x[0], x[1], u[0], u[1], t, enough)
+def _first_exit(grid, x, u, t, horizon):
+    """Follow the ray from ``x + t u`` until a cell that it touches is blocked."""
+    return _traverse(grid.free_distance, x[0], x[1], u[0], u[1], t, horizon)
 
 
 @touches.register(GridData)
 @kernel
 def _touches(grid, x):
-    """Say whether one of the cells that touch the point is free."""
+    """Return whether one of the cells that touch the point is free."""
     free_distance = grid.free_distance
     rows, columns = free_distance.shape
     if not (0.0 < x[0] < columns and 0.0 < x[1] < rows):
@@ -133,7 +136,7 @@ def _first_entry(grid, x, u, t):
 
 @kernel
 def _slab(x, u, size):
-    """Parameters between which the ray is in (0, size) along one axis; inf, -inf for never."""
+    """Return the parameters between which ``x + s u`` is in (0, size); (inf, -inf) for none."""
     if u == 0.0:
         return (-math.inf, math.inf) if 0.0 < x < size else (math.inf, -math.inf)
     a, b = (0.0 - x) / u, (size - x) / u
@@ -142,7 +145,7 @@ def _slab(x, u, size):
 
 @kernel
 def _any_free(free_distance, left, right, below, above):
-    """Say whether a cell of some columns and rows, both ends included, is free."""
+    """Return whether a cell of a range of columns and rows, ends included, is free."""
     for row in range(below, above + 1):
         for column in range(left, right + 1):
             if free_distance[row, column] > 0:
@@ -153,6 +156,7 @@ def _any_free(free_distance, left, right, below, above):
 @segment_is_free.register(GridData)
 @kernel
 def _segment_is_free(grid, a, b):
+    """Follow the segment from ``a`` (2,) to ``b`` (2,) only."""
     dx, dy = b[0] - a[0], b[1] - a[1]
     if dx == 0.0 and dy == 0.0:
         return is_free(grid.free_distance, a[0], a[1])
@@ -160,8 +164,12 @@ def _segment_is_free(grid, a, b):
 
 
 @kernel
-def _traverse(free_distance, x, y, dx, dy, t, enough):
-    """Follow the ray cell by cell, and from free square to free square where walls are far."""
+def _traverse(free_distance, x, y, dx, dy, t, horizon):
+    """
+    Return the first parameter from ``t`` on at which the ray touches a blocked cell.
+
+    The ray is followed cell by cell, and from free square to free square where walls are far.
+    """
     x_at_t, y_at_t = x + t * dx, y + t * dy
     if not is_free(free_distance, x_at_t, y_at_t):
         return t
@@ -177,19 +185,19 @@ def _traverse(free_distance, x, y, dx, dy, t, enough):
                 s_column = _exit(x, per_column, column, column_step, reach)
                 s_row = _exit(y, per_row, row, row_step, reach)
                 s = min(s_column, s_row)
-                if s > enough:
+                if s > horizon:
                     return max(s, t)
                 column, row = math.floor(x + s * dx), math.floor(y + s * dy)
                 reach = int(free_distance[row, column]) - 1
             column, s_column = _settled(x, dx, column, column_step, s)
             row, s_row = _settled(y, dy, row, row_step, s)
         s = min(s_column, s_row)
-        if s > enough:
+        if s > horizon:
             return max(s, t)
-        if s_column == s_row:
-            beside = free_distance[row, column + column_step]
-            if beside == 0 or free_distance[row + row_step, column] == 0:
-                return max(s, t)
+        if s_column == s_row and is_corner_blocked(
+            free_distance, row, column, row_step, column_step
+        ):
+            return max(s, t)
         across_column, across_row = s_column == s, s_row == s
         if across_column:
             column += column_step
@@ -198,17 +206,29 @@ def _traverse(free_distance, x, y, dx, dy, t, enough):
             row += row_step
             s_row = _crossing(y, dy, row, row_step)
         reach = int(free_distance[row, column]) - 1
-        along_wall = (
-            free_distance[row, column + beside_column] == 0
-            or free_distance[row + beside_row, column] == 0
-        )
-        if reach < 0 or along_wall:
+        if reach < 0 or is_along_wall(free_distance, row, column, beside_row, beside_column):
             return max(s, t)
+
+
+@inlined
+def is_corner_blocked(free_distance, row, column, row_step, column_step):
+    """Return whether a cell beside a diagonal step is blocked, so that its corner is."""
+    beside = free_distance[row, column + column_step]
+    return beside == 0 or free_distance[row + row_step, column] == 0
+
+
+@inlined
+def is_along_wall(free_distance, row, column, beside_row, beside_column):
+    """Return whether the cell on the other side of a grid line that the ray runs on is blocked."""
+    return (
+        free_distance[row, column + beside_column] == 0
+        or free_distance[row + beside_row, column] == 0
+    )
 
 
 @kernel
 def first_cell(at, u):
-    """Index of the cell ahead, step to the next one, and -1 when the ray runs along a line."""
+    """Return the cell ahead, the step to the next one, and -1 if the ray is on a grid line."""
     cell = math.floor(at)
     if u > 0.0:
         return cell, 1, 0
@@ -219,7 +239,7 @@ def first_cell(at, u):
 
 @kernel
 def _crossing(x, u, cell, step):
-    """Parameter at which the ray leaves ``cell`` along one axis; inf when it never does."""
+    """Return the parameter at which the ray leaves ``cell`` along one axis; inf for never."""
     if step == 0:
         return math.inf
     return (cell + (step > 0) - x) / u
@@ -227,7 +247,7 @@ def _crossing(x, u, cell, step):
 
 @kernel
 def _exit(x, per_u, cell, step, reach):
-    """Parameter just before the ray leaves the free cells up to ``reach`` away; inf for never."""
+    """Return a parameter just before the ray leaves the cells up to ``reach`` away, or inf."""
     if step == 0:
         return math.inf
     side = cell + reach + 1 - SKIN if step > 0 else cell - reach + SKIN
@@ -236,7 +256,11 @@ def _exit(x, per_u, cell, step, reach):
 
 @kernel
 def _settled(x, u, cell, step, s):
-    """Cell that traversal is in at ``s``, given one next to it at most, and where it leaves it."""
+    """
+    Return the cell that traversal is in at ``s``, and the parameter at which it leaves that cell.
+
+    ``cell`` is that cell or a neighbour of it.
+    """
     if step == 0:
         return cell, math.inf
     while _crossing(x, u, cell - step, step) >= s:

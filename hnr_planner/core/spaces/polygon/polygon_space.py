@@ -1,12 +1,21 @@
 """A polygon with holes, or several, as a space of the plane."""
 
+import math
 from typing import Any, TYPE_CHECKING
 
 from hnr_planner.core.checks import check_number, check_point, check_points, Floats
 from hnr_planner.core.errors import SpaceError
-from hnr_planner.core.spaces.bounds import check_bounds
-from hnr_planner.core.spaces.polygon.edges import distance_to_edges, edges_in_cells, PolygonData
-from hnr_planner.core.spaces.primitives import part_of
+from hnr_planner.core.kernels.kernel import kernel
+from hnr_planner.core.spaces.bounds import check_bounds, in_words, kernel_origin
+from hnr_planner.core.spaces.curves.curve import along, first_exit_on_curve
+from hnr_planner.core.spaces.curves.surfaces import (
+    add_crossings,
+    add_level_crossings,
+    first_exit_between_surfaces,
+)
+from hnr_planner.core.spaces.polygon.cells import edges_in_cells
+from hnr_planner.core.spaces.polygon.edges import distance_to_edges, PolygonData
+from hnr_planner.core.spaces.primitives import component
 from hnr_planner.core.spaces.space import Space
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -14,7 +23,7 @@ from numpy.typing import ArrayLike, NDArray
 if TYPE_CHECKING:
     from shapely import LinearRing, MultiPolygon, Polygon
 
-#: Distance to an edge, in units in the last place of the largest coordinate, that counts as none.
+#: Distance to an edge that counts as 0, in roundings of the largest coordinate.
 ROUNDING = 16
 
 
@@ -22,13 +31,13 @@ class PolygonSpace(Space):
     """
     The inside of a shapely polygon or multipolygon.
 
-    Rings are closed: a point on one is not free, and a ray stops at a corner that it touches. The
-    polygons of a multipolygon may touch in points, where nothing passes.
+    Rings are obstacles: a point on one is not free, and a ray stops at a corner that it touches.
+    The polygons of a multipolygon may touch in points, where nothing passes.
 
     Parameters
     ----------
     polygon : shapely.Polygon or shapely.MultiPolygon
-        Valid, with an inside. Heights are left out.
+        Valid, with an inside. Coordinates z are ignored.
 
     Raises
     ------
@@ -38,19 +47,30 @@ class PolygonSpace(Space):
     Attributes
     ----------
     polygon : shapely.Polygon or shapely.MultiPolygon
-        What was given.
+        The argument.
 
     """
 
     dim = 2
+    data: PolygonData
 
     def __init__(self, polygon: 'Polygon | MultiPolygon') -> None:
         self.polygon = polygon
         self._polygons = _check_polygons(polygon)
         check_bounds('the polygon', *self.bounds)
+        self._kernel_origin = kernel_origin(*self.bounds)
         edges, numbers = _edges(self._polygons)
+        edges = self.to_kernel(edges.reshape(-1, 2)).reshape(-1, 4)
         rounding = ROUNDING * float(np.spacing(np.abs(edges).max()))
-        self.data: PolygonData = edges_in_cells(edges, numbers, rounding)
+        self.data = edges_in_cells(edges, numbers, rounding)
+
+    def __repr__(self) -> str:
+        """Count polygons, holes and edges, and name the bounds."""
+        lower, upper = self.bounds
+        return (
+            f'PolygonSpace(polygons={len(self._polygons)}, holes={len(self._holes())}, '
+            f'edges={len(self.data.edges)}, lower={in_words(lower)}, upper={in_words(upper)})'
+        )
 
     @property
     def bounds(self) -> tuple[Floats, Floats]:
@@ -65,25 +85,25 @@ class PolygonSpace(Space):
 
     @property
     def typical_clearance(self) -> float:
-        """Mean distance to the walls of a corridor with as much area and boundary."""
+        """Mean distance to the walls of a corridor of the same area and length of boundary."""
         return float(self.polygon.area / self.polygon.length / 2.0)
 
     @property
     def island_points(self) -> Floats:
-        """A point (k, 2) in each hole."""
+        """A point (k, 2) in each hole, kernel frame."""
         from shapely import Polygon
 
         holes = [Polygon(hole).representative_point() for _, hole in self._holes()]
-        return np.array([[point.x, point.y] for point in holes]).reshape(-1, 2)
+        return self.to_kernel(np.array([[point.x, point.y] for point in holes]).reshape(-1, 2))
 
     def covers_box(self, lower: Floats, upper: Floats) -> bool:
-        """Say whether no ring comes into the box and its inside is within the polygon."""
+        """Return whether the closed polygon covers a box."""
         from shapely import box
 
         return bool(self.polygon.covers(box(*lower, *upper)))
 
     def why_not_free(self, point: ArrayLike) -> str:
-        """Say in words why ``point`` (2,) is not free."""
+        """Return in words why ``point`` (2,) is not free."""
         from shapely import Point, Polygon
 
         where = Point(check_point('point', point, 2))
@@ -98,28 +118,28 @@ class PolygonSpace(Space):
         )
 
     def connected(self, a: ArrayLike, b: ArrayLike) -> bool:
-        """Say whether a path joins two free points: whether they lie in the same polygon."""
-        component = self._component(a)
-        return component != 0 and component == self._component(b)
+        """Return whether a path joins two free points: whether they lie in the same polygon."""
+        label = self._component(a)
+        return label != 0 and label == self._component(b)
 
     def region_reachable(self, start: ArrayLike, goal: ArrayLike, radius: float) -> bool:
-        """Say whether the start's polygon comes nearer than ``radius`` to ``goal``."""
+        """Return whether the start's polygon comes nearer than ``radius`` to ``goal``."""
         from shapely import Point
 
-        component = self._component(start)
-        if component == 0:
+        label = self._component(start)
+        if label == 0:
             return False
-        distance = self._polygons[component - 1].distance(Point(check_point('goal', goal, 2)))
+        distance = self._polygons[label - 1].distance(Point(check_point('goal', goal, 2)))
         return bool(distance < check_number('radius', radius, 0.0))
 
     def clearance(self, points: ArrayLike) -> Floats:
-        """Distance (k,) from points (k, 2) to the nearest ring; 0 where they are not free."""
+        """Return the distance (k,) from points (k, 2) to the nearest ring; 0 where not free."""
         points = np.atleast_2d(check_points('points', points, 2))
-        return distance_to_edges(self.data.edges, points) * self.contains(points)
+        return distance_to_edges(self.data.edges, self.to_kernel(points)) * self.contains(points)
 
     def _component(self, point: ArrayLike) -> int:
         """Return the number of the polygon that holds a point (2,), from 1; 0 for none."""
-        return int(part_of(self.data, check_point('point', point, 2)))
+        return int(component(self.data, self.to_kernel(check_point('point', point, 2))))
 
     def _holes(self) -> list[tuple[int, 'LinearRing']]:
         """Return the rings that are holes, each with the number of its polygon."""
@@ -130,11 +150,12 @@ class PolygonSpace(Space):
         ]
 
     def _name(self, number: int) -> str:
+        """Return the name of a polygon in messages."""
         return 'the polygon' if len(self._polygons) == 1 else f'polygon {number - 1}'
 
 
 def _check_polygons(polygon: Any) -> list['Polygon']:
-    """Return the polygons of a valid geometry, each seen counter-clockwise, or SpaceError."""
+    """Return the polygons of a valid geometry, rings counter-clockwise, or raise SpaceError."""
     from shapely import MultiPolygon, Polygon
     from shapely.geometry.polygon import orient
     from shapely.validation import explain_validity
@@ -162,3 +183,20 @@ def _edges(polygons: list['Polygon']) -> tuple[Floats, NDArray[np.int32]]:
             edges.append(of_ring)
             numbers.append(np.full(len(of_ring), number, dtype=np.int32))
     return np.concatenate(edges), np.concatenate(numbers)
+
+
+first_exit_on_curve.register(PolygonData)(first_exit_between_surfaces)
+
+
+@add_crossings.register(PolygonData)
+@kernel
+def _add_crossings(polygon, curve, end, crossings, n):
+    """Add where a curve meets the whole line of each edge: further crossings do no harm."""
+    normal = np.empty(2)
+    for k in range(len(polygon.edges)):
+        ax, ay, bx, by = polygon.edges[k]
+        length = math.hypot(bx - ax, by - ay)
+        normal[0], normal[1] = (by - ay) / length, (ax - bx) / length
+        level = normal[0] * ax + normal[1] * ay
+        n = add_level_crossings(along(curve, normal), level, end, crossings, n)
+    return n

@@ -1,14 +1,14 @@
 """
-Walking in a polytope: the distances to its planes go along with the chain.
+The cache of a chain in a polytope: the distances from the chain's point to the planes.
 
-A line along ``u`` approaches the planes at the rates ``normals u``; a move by ``s`` takes ``s``
-times the rates off the distances, and nothing has to be worked out from the point. Along an axis
-the rates are one column of the normals, of which a sparse polytope looks at the numbers that are
-not zero alone.
+A line along ``u`` approaches the planes at the rates ``normals u``; a move by ``s`` subtracts
+``s`` times the rates from the distances, and nothing has to be computed from the point. Along an
+axis the rates are one column of the normals, of which a sparse polytope reads the nonzero numbers
+only.
 
-Rounding would let the distances drift, so they are worked out anew every ``REFRESH`` steps, and a
-move to less than ``doubt`` before a plane is checked from the point itself: every point of a chain
-is one that ``contains`` says is free.
+Rounding lets the distances drift, so they are computed anew every ``REFRESH`` steps, and a move to
+less than ``doubt`` from a plane is checked from the point itself: ``contains`` holds for every
+point of a chain.
 """
 
 import math
@@ -23,32 +23,33 @@ from hnr_planner.core.spaces.chain_cache import (
     move_if_free,
     NO_AXIS,
     open_cache,
+    REFRESH,
     refresh,
 )
 from hnr_planner.core.spaces.polytope.planes import LONG, PolytopeData
 import numpy as np
 from numpy.typing import NDArray
 
-#: Stands for distances that round to less: they never reach zero.
+#: Least distance: distances that round to less are replaced by it, so that none is 0.
 LEAST = float(np.finfo(np.float64).tiny)
 
 
 class PolytopeCache(NamedTuple):
     """
-    Where a chain stands in a polytope.
+    Position of a chain in a polytope.
 
     Attributes
     ----------
     x, y : (dim,)
-        The chain's point, and room for the next one.
+        The chain's point, and memory for the next one.
     slacks : (m,)
         Distances to the planes.
     rates : (m,)
-        How fast the line asked last approaches them.
-    hurries : (m,)
-        Rates over distances.
-    hurries_signed, hurries_unsigned : (m,)
-        The bits of these.
+        Rates at which the line of the last chord approaches the planes.
+    ratios : (m,)
+        Rates over distances: the inverse of the parameter at which each plane is met.
+    ratios_signed, ratios_unsigned : (m,)
+        The bits of the ratios as whole numbers, int64 and uint64.
 
     """
 
@@ -56,37 +57,40 @@ class PolytopeCache(NamedTuple):
     y: Floats
     slacks: Floats
     rates: Floats
-    hurries: Floats
-    hurries_signed: NDArray[np.int64]
-    hurries_unsigned: NDArray[np.uint64]
+    ratios: Floats
+    ratios_signed: NDArray[np.int64]
+    ratios_unsigned: NDArray[np.uint64]
 
 
 @memory_size.register(PolytopeData)
 @kernel
 def _memory_size(polytope, dim):
+    """Return the number of floats for a point, slacks, rates and ratios."""
     return dim + 3 * len(polytope.offsets)
 
 
 @open_cache.register(PolytopeData)
 @inlined
 def _open_cache(polytope, x, memory):
+    """Return views of a chain's memory."""
     first, m = len(x), len(polytope.offsets)
     second, third = first + m, first + 2 * m
-    hurries = memory[third:]
+    ratios = memory[third:]
     return PolytopeCache(
         x=x,
         y=memory[:first],
         slacks=memory[first:second],
         rates=memory[second:third],
-        hurries=hurries,
-        hurries_signed=hurries.view(np.int64),
-        hurries_unsigned=hurries.view(np.uint64),
+        ratios=ratios,
+        ratios_signed=ratios.view(np.int64),
+        ratios_unsigned=ratios.view(np.uint64),
     )
 
 
 @refresh.register(PolytopeData)
 @kernel
 def _refresh(polytope, cache):
+    """Compute the distances to the planes from the chain's point."""
     _set_rates(polytope.layout, cache.x, cache.slacks)
     for i in range(len(cache.slacks)):
         cache.slacks[i] = max(polytope.offsets[i] - cache.slacks[i], LEAST)
@@ -95,6 +99,7 @@ def _refresh(polytope, cache):
 @chord_cached.register(PolytopeData)
 @inlined
 def _chord_cached(polytope, cache, u, axis):
+    """Return the chord from the distances and the rates along ``u``."""
     layout = polytope.layout
     if axis == NO_AXIS:
         _set_rates(layout, u, cache.rates)
@@ -109,13 +114,14 @@ def _chord_cached(polytope, cache, u, axis):
 @move_along.register(PolytopeData)
 @inlined
 def _move_along(polytope, cache, u, axis, s):
+    """Move, and update the distances; near a plane, check the end from the point itself."""
     layout = polytope.layout
     if axis == NO_AXIS or _is_dense(layout):
         n_doubtful = _move_at_rates(cache, s, polytope.doubt)
     else:
         n_doubtful = _move_along_sparse_axis(layout, axis, cache.slacks, s, polytope.doubt)
     if n_doubtful > 0:
-        return _move_and_look(polytope, cache, u, s)
+        return _move_and_refresh(polytope, cache, u, s)
     if axis == NO_AXIS:
         for i in range(len(u)):
             cache.x[i] += s * u[i]
@@ -125,8 +131,8 @@ def _move_along(polytope, cache, u, axis, s):
 
 
 @kernel
-def _move_and_look(polytope, cache, u, s):
-    """Move if the end is free for certain, and work out the distances from the point."""
+def _move_and_refresh(polytope, cache, u, s):
+    """Move if ``contains`` holds for the end, and compute the distances from the point."""
     for i in range(len(u)):
         cache.y[i] = cache.x[i] + s * u[i]
     is_free = move_if_free(polytope, cache)
@@ -136,6 +142,7 @@ def _move_and_look(polytope, cache, u, s):
 
 @inlined
 def _is_dense(layout):
+    """Return whether the matrix is stored densely."""
     return len(layout.dense) > 0
 
 
@@ -161,31 +168,31 @@ def _chord_at_rates(cache):
     """
     Return the parameters at which the first plane is met, backwards and forwards.
 
-    Numbers above 0 are ordered as their bits are, taken for a signed whole number; numbers below 0
-    have the largest bits of all taken for an unsigned one, and the lowest number the largest. The
-    extremes of whole numbers are found several at a time.
+    Floats above 0 are ordered like their bits read as a signed whole number; floats below 0 have
+    the largest bits read as an unsigned one, the lowest float the largest. So the extremes are
+    those of whole numbers, which the compiler vectorizes.
     """
     if len(cache.slacks) < LONG:
         most, least = 0.0, 0.0
         for i in range(len(cache.slacks)):
-            hurry = cache.rates[i] / cache.slacks[i]
-            most, least = max(most, hurry), min(least, hurry)
+            ratio = cache.rates[i] / cache.slacks[i]
+            most, least = max(most, ratio), min(least, ratio)
         return 1.0 / least, 1.0 / most
     for i in range(len(cache.slacks)):
-        cache.hurries[i] = cache.rates[i] / cache.slacks[i]
+        cache.ratios[i] = cache.rates[i] / cache.slacks[i]
     forwards, backwards = np.int64(0), np.uint64(0)
     for i in range(len(cache.slacks)):
-        forwards = max(forwards, cache.hurries_signed[i])
-        backwards = max(backwards, cache.hurries_unsigned[i])
-    cache.hurries_signed[0] = forwards
-    upper = 1.0 / cache.hurries[0]
-    cache.hurries_unsigned[0] = backwards
-    return 1.0 / cache.hurries[0], upper
+        forwards = max(forwards, cache.ratios_signed[i])
+        backwards = max(backwards, cache.ratios_unsigned[i])
+    cache.ratios_signed[0] = forwards
+    upper = 1.0 / cache.ratios[0]
+    cache.ratios_unsigned[0] = backwards
+    return 1.0 / cache.ratios[0], upper
 
 
 @inlined
 def _move_at_rates(cache, s, doubt):
-    """Change every distance; return how many are too small to be sure of."""
+    """Update every distance; return how many are within the error ``doubt`` of 0."""
     n_doubtful = 0
     for i in range(len(cache.slacks)):
         slack = cache.slacks[i] - s * cache.rates[i]
@@ -196,6 +203,7 @@ def _move_at_rates(cache, s, doubt):
 
 @inlined
 def _chord_along_sparse_axis(layout, axis, slacks):
+    """Return the chord along an axis from the nonzero numbers of one column."""
     middle = layout.column_starts[axis, 1]
     lower, upper = -math.inf, math.inf
     for k in range(layout.column_starts[axis, 0], middle):
@@ -207,10 +215,17 @@ def _chord_along_sparse_axis(layout, axis, slacks):
 
 @inlined
 def _move_along_sparse_axis(layout, axis, slacks, s, doubt):
-    """Change the distances that the axis changes; return how many are too small to be sure of."""
+    """Update the distances that the axis changes; return how many are within ``doubt`` of 0."""
     n_doubtful = 0
     for k in range(layout.column_starts[axis, 0], layout.column_starts[axis, 2]):
         slack = slacks[layout.rows[k]] - s * layout.values[k]
         slacks[layout.rows[k]] = slack
         n_doubtful += not slack > doubt
     return n_doubtful
+
+
+def largest_error(normals: Floats, offsets: Floats, lower: Floats, upper: Floats) -> float:
+    """Bound the rounding error of a distance after ``REFRESH`` steps within bounds (dim,)."""
+    reach = np.abs(normals) @ np.maximum(np.abs(lower), np.abs(upper)) + np.abs(offsets)
+    largest = float(reach.max() + np.linalg.norm(upper - lower))
+    return REFRESH * (4 + len(lower)) * float(np.finfo(np.float64).eps) * largest

@@ -1,33 +1,48 @@
-"""The planes of a polytope, compiled: as they are, and as walks read them."""
+"""
+The planes of a polytope, compiled: as the primitives read them, and as walks do.
 
+Walks have kernels of their own, in ``chain_cache``.
+"""
+
+import math
 from typing import NamedTuple
 
 from hnr_planner.core.checks import Floats
-from hnr_planner.core.spaces.chain_cache import REFRESH
+from hnr_planner.core.kernels.kernel import kernel
+from hnr_planner.core.spaces.curves.curve import along, first_exit_on_curve
+from hnr_planner.core.spaces.curves.surfaces import (
+    add_crossings,
+    add_level_crossings,
+    first_exit_between_surfaces,
+)
+from hnr_planner.core.spaces.primitives import contains, first_entry, first_exit, touches
 import numpy as np
 from numpy.typing import NDArray
 
-#: Columns of at least so many numbers, of which one in SPARSE at least is not zero, are dense.
-LONG, SPARSE = 32, 4
+#: Least number of rows of a matrix that is stored densely.
+LONG = 32
+#: A matrix is stored densely when at least one in this many of its numbers is not zero.
+SPARSE = 4
 
 
 class Layout(NamedTuple):
     """
-    A matrix (m, dim) as walks read it: its columns, or what is not zero in columns and in rows.
+    A matrix (m, dim) as walks read it: its columns, or its nonzero numbers by columns and rows.
 
     Attributes
     ----------
     dense : (dim, m)
-        One row for each column; (0, 0) where zeros are left out.
+        One row for each column; (0, 0) where only nonzero numbers are stored.
     column_starts : (dim, 3) uint64
-        Where the positive numbers of each column begin in the arrays below, where the negative
-        ones do, and where they end.
+        Indices in ``rows``, ``values`` and ``inverses`` at which the positive numbers of each
+        column begin, at which the negative ones do, and at which they end.
     rows, values, inverses : (k,)
-        Their rows, uint64, the numbers themselves and their inverses.
+        Row of each number (uint64), the number and its inverse.
     row_starts : (m + 1,) uint64
-        Where the numbers of each row begin in the arrays below, and where the last ends.
+        Indices in ``columns`` and ``row_values`` at which the numbers of each row begin, and the
+        end of the last.
     columns, row_values : (k,)
-        Their columns, uint64, and the numbers themselves.
+        Column of each number (uint64), and the number.
 
     """
 
@@ -54,7 +69,7 @@ class PolytopeData(NamedTuple):
     layout : Layout
         The normals as walks read them.
     doubt : float
-        A distance to a plane that walks remember is right up to this.
+        Largest error of a distance to a plane that walks keep.
 
     """
 
@@ -65,16 +80,16 @@ class PolytopeData(NamedTuple):
 
 
 def layout_of(matrix: Floats) -> Layout:
-    """Return a matrix (m, dim) in the form that is read faster."""
+    """Return a matrix (m, dim) in the layout that is read faster."""
     m, dim = matrix.shape
     if m >= LONG and np.count_nonzero(matrix) * SPARSE >= matrix.size:
         none, empty = np.empty(0, np.uint64), np.empty(0)
         starts = np.empty((0, 3), np.uint64)
         return Layout(matrix.T.copy(), starts, none, empty, empty, none, none, empty)
-    parts = [np.flatnonzero(part) for column in matrix.T for part in (column > 0, column < 0)]
-    ends = np.cumsum([0, *map(len, parts)])
+    by_sign = [np.flatnonzero(sign) for column in matrix.T for sign in (column > 0, column < 0)]
+    ends = np.cumsum([0, *map(len, by_sign)])
     column_starts = np.stack([ends[:-2:2], ends[1:-1:2], ends[2::2]], axis=1)
-    rows = np.concatenate(parts)
+    rows = np.concatenate(by_sign)
     values = matrix[rows, np.repeat(np.arange(dim), column_starts[:, 2] - column_starts[:, 0])]
     at_row, columns = np.nonzero(matrix)
     return Layout(
@@ -89,8 +104,86 @@ def layout_of(matrix: Floats) -> Layout:
     )
 
 
-def doubt(normals: Floats, offsets: Floats, lower: Floats, upper: Floats) -> float:
-    """Bound what rounding does to a distance in ``REFRESH`` steps within bounds (dim,)."""
-    reach = np.abs(normals) @ np.maximum(np.abs(lower), np.abs(upper)) + np.abs(offsets)
-    largest = float(reach.max() + np.linalg.norm(upper - lower))
-    return REFRESH * (4 + len(lower)) * float(np.finfo(np.float64).eps) * largest
+first_exit_on_curve.register(PolytopeData)(first_exit_between_surfaces)
+
+
+@contains.register(PolytopeData)
+@kernel
+def _contains(polytope, x):
+    """Return whether ``x`` is strictly inside of every plane."""
+    return _holds(polytope, x, False)
+
+
+@touches.register(PolytopeData)
+@kernel
+def _touches(polytope, x):
+    """Return whether ``x`` is inside of every plane or on it."""
+    return _holds(polytope, x, True)
+
+
+@first_exit.register(PolytopeData)
+@kernel
+def _first_exit(polytope, x, u, t, horizon):
+    """Return the upper end of the interval of the line inside, where it contains ``t``."""
+    lower, upper = _span(polytope, x, u, False)
+    return upper if lower < t < upper else t
+
+
+@first_entry.register(PolytopeData)
+@kernel
+def _first_entry(polytope, x, u, t):
+    """Return the lower end of the interval of the line in the closure, or ``t`` within it."""
+    lower, upper = _span(polytope, x, u, True)
+    return max(t, lower) if t <= upper else math.inf
+
+
+@kernel
+def _holds(polytope, x, closed):
+    """Return whether every inequality holds at ``x``, strictly unless ``closed``."""
+    for k in range(len(polytope.offsets)):
+        slack = _slack(polytope, k, x)
+        if not (slack > 0.0 or (closed and slack == 0.0)):
+            return False
+    return True
+
+
+@kernel
+def _span(polytope, x, u, closed):
+    """Return the interval of the line ``x + s u`` inside of every plane; (inf, -inf) for none."""
+    first, last = -math.inf, math.inf
+    for k in range(len(polytope.offsets)):
+        slack, rate = _slack(polytope, k, x), _rate(polytope, k, u)
+        if rate > 0.0:
+            last = min(last, slack / rate)
+        elif rate < 0.0:
+            first = max(first, slack / rate)
+        elif not (slack > 0.0 or (closed and slack == 0.0)):
+            return math.inf, -math.inf
+    if first < last or (closed and first == last):
+        return first, last
+    return math.inf, -math.inf
+
+
+@kernel
+def _slack(polytope, k, x):
+    """Return the distance from ``x`` to plane ``k``, below 0 beyond it."""
+    return polytope.offsets[k] - _rate(polytope, k, x)
+
+
+@kernel
+def _rate(polytope, k, u):
+    """Return the rate at which a line along ``u`` approaches plane ``k``."""
+    rate = 0.0
+    for i in range(len(u)):
+        rate += polytope.normals[k, i] * u[i]
+    return rate
+
+
+@add_crossings.register(PolytopeData)
+@kernel
+def _add_crossings(polytope, curve, end, crossings, n):
+    """Add where a curve meets the planes."""
+    for k in range(len(polytope.offsets)):
+        f = along(curve, polytope.normals[k])
+        n = add_level_crossings(f, polytope.offsets[k], end, crossings, n)
+    return n

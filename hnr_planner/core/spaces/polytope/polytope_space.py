@@ -1,18 +1,20 @@
 """A polytope: the points that hold finitely many linear inequalities."""
 
-import math
+from functools import cached_property
+from typing import Any
 
-from hnr_planner.core.checks import check_numbers, check_point, check_vector, Floats
+from hnr_planner.core.checks import check_point, Floats
 from hnr_planner.core.errors import SpaceError
-from hnr_planner.core.kernels.kernel import kernel
-from hnr_planner.core.spaces.bounds import check_bounds
-from hnr_planner.core.spaces.polytope.planes import doubt, layout_of, PolytopeData
-from hnr_planner.core.spaces.primitives import contains, first_entry, first_exit, touches
-from hnr_planner.core.spaces.space import Space
+from hnr_planner.core.spaces.bounds import COARSEST, FINEST
+from hnr_planner.core.spaces.polytope.chain_cache import largest_error
+from hnr_planner.core.spaces.polytope.inequalities import check_inequalities
+from hnr_planner.core.spaces.polytope.measures import bounds, largest_ball, Reach, reach
+from hnr_planner.core.spaces.polytope.planes import layout_of, PolytopeData
+from hnr_planner.core.spaces.space import MARGIN, Space
 import numpy as np
 from numpy.typing import ArrayLike
 
-#: A polytope thinner than this part of its bounds' diagonal has no inside that numbers resolve.
+#: Least distance from the analytic centre to a plane, as a fraction of the terms that it rounds.
 THINNEST = 1e-10
 
 
@@ -20,40 +22,73 @@ class PolytopeSpace(Space):
     """
     The points x with ``a x < b`` in every row.
 
+    ``bounds``, and what needs them, are computed when first used: they take 2 dim linear programs.
+    Walks do not use them.
+
     Parameters
     ----------
     a : (m, dim)
-        One row for each inequality.
+        One row for each inequality, dense or a sparse matrix of scipy's. Rows of zeros may be
+        among them, with a right-hand side above 0.
     b : (m,)
-        Right-hand sides.
+        Right-hand sides; inf for none.
 
     Raises
     ------
     SpaceError
         When the inequalities leave no point, none with room around it, or an unbounded set.
 
+    Attributes
+    ----------
+    centre : (dim,)
+        Centre of a largest ball inside; in coordinates divided by their sizes where those differ
+        by a factor of 1000 or more.
+    inner_radius : float
+        Distance from the centre to the nearest plane.
+
     """
 
-    def __init__(self, a: ArrayLike, b: ArrayLike) -> None:
-        normals, offsets = _check_inequalities(a, b)
+    data: PolytopeData
+
+    def __init__(self, a: Any, b: ArrayLike) -> None:
+        normals, offsets, self._rows = check_inequalities(a, b)
         self.dim = normals.shape[1]
-        lower, upper = self._lower, self._upper = _bounds(normals, offsets)
-        check_bounds('the polytope', lower, upper)
+        if len(normals) == 0:
+            raise SpaceError('the polytope must be bounded, but no row of a bounds anything')
+        ball = largest_ball(normals, offsets, self._rows)
+        extent = reach(normals, offsets, ball.centre)
+        self._kernel_origin = _origin(extent)
+        if self._kernel_origin is not None:
+            offsets = _moved(normals, offsets, self._kernel_origin)
+            ball = largest_ball(normals, offsets, self._rows)
+            extent = reach(normals, offsets, ball.centre)
+        _check_resolved(normals, offsets, extent)
+        lower, upper = extent.centre - extent.outer, extent.centre + extent.outer
         self.data = PolytopeData(
-            normals, offsets, layout_of(normals), doubt(normals, offsets, lower, upper)
+            normals, offsets, layout_of(normals), largest_error(normals, offsets, lower, upper)
         )
-        #: Centre (dim,) of the largest ball inside, and its radius.
-        self.centre, self.inner_radius = _largest_ball(normals, offsets)
-        if self.inner_radius <= THINNEST * np.linalg.norm(self._upper - self._lower):
-            raise SpaceError(
-                f'the polytope must have an inside, but the largest ball in it has radius '
-                f'{max(self.inner_radius, 0.0):g}'
-            )
+        self.centre, self.inner_radius = self.from_kernel(ball.centre), ball.radius
+        self._sizes = ball.sizes
+
+    def __repr__(self) -> str:
+        """Name the dimension and count the inequalities."""
+        return f'PolytopeSpace(dim={self.dim}, inequalities={len(self.data.offsets)})'
+
+    @cached_property
+    def kernel_bounds(self) -> tuple[Floats, Floats]:
+        """Lower and upper corner (dim,), kernel frame."""
+        return bounds(self.data.normals, self.data.offsets, self._sizes)
 
     @property
     def bounds(self) -> tuple[Floats, Floats]:
         """Lower and upper corner (dim,)."""
-        return self._lower.copy(), self._upper.copy()
+        lower, upper = self.kernel_bounds
+        return self.from_kernel(lower), self.from_kernel(upper)
+
+    @property
+    def zero_length(self) -> float:
+        """Length up to which a chord counts as zero: by the ball inside, without the bounds."""
+        return MARGIN * self.inner_radius
 
     @property
     def typical_clearance(self) -> float:
@@ -61,125 +96,50 @@ class PolytopeSpace(Space):
         return self.inner_radius / (self.dim + 1)
 
     def covers_box(self, lower: Floats, upper: Floats) -> bool:
-        """Say whether every inequality holds at the corner where it is nearest to failing."""
+        """Return whether every inequality holds at the corner where it is nearest to failing."""
         normals, offsets = self.data.normals, self.data.offsets
-        worst = np.where(normals > 0.0, upper, lower)
+        worst = np.where(normals > 0.0, self.to_kernel(upper), self.to_kernel(lower))
         return bool(((normals * worst).sum(axis=1) <= offsets).all())
 
     def why_not_free(self, point: ArrayLike) -> str:
-        """Say in words why ``point`` (dim,) is not free."""
-        normals, offsets = self.data.normals, self.data.offsets
-        excess = normals @ check_point('point', point, self.dim) - offsets
+        """Return in words why ``point`` (dim,) is not free."""
+        x = self.to_kernel(check_point('point', point, self.dim))
+        excess = self.data.normals @ x - self.data.offsets
         k = int(np.argmax(excess))
-        return f'outside the polytope: {excess[k]:g} beyond the plane of row {k} of a'
+        row = self._rows[k]
+        return f'outside the polytope: {excess[k]:g} beyond the plane of row {row} of a'
 
 
-def _check_inequalities(a: ArrayLike, b: ArrayLike) -> tuple[Floats, Floats]:
-    """Return rows of unit length and their right-hand sides, or raise SpaceError."""
-    offsets = check_vector('b', b, SpaceError)
-    rows = check_numbers('a', a, SpaceError)
-    if rows.ndim != 2 or len(rows) != len(offsets) or rows.shape[1] == 0:
-        raise SpaceError(f'a must have shape ({len(offsets)}, dim) as b has, got {rows.shape}')
-    if not np.isfinite(rows).all():
-        raise SpaceError('a must be finite, and is not')
-    lengths = np.linalg.norm(rows, axis=1)
-    if not lengths.all():
-        raise SpaceError(f'row {int(np.argmin(lengths))} of a must not be zero')
-    return rows / lengths[:, np.newaxis], offsets / lengths
+def _origin(extent: Reach) -> Floats | None:
+    """Return the origin (dim,) of the kernel frame, None for 0, as ``kernel_origin`` does."""
+    rounding = np.spacing(np.abs(extent.centre) + extent.outer)
+    if not (rounding <= 2.0 * COARSEST * extent.inner).all():
+        raise SpaceError(
+            f'the polytope is too thin for where it lies: coordinates must resolve {COARSEST:g} '
+            f'of its width, but around {extent.centre.tolist()} they are rounded to '
+            f'{rounding.max():g}; move it nearer to the origin'
+        )
+    is_far = rounding > 2.0 * FINEST * extent.inner
+    return np.where(is_far, extent.centre, 0.0) if is_far.any() else None
 
 
-def _bounds(normals: Floats, offsets: Floats) -> tuple[Floats, Floats]:
-    """Lower and upper corner (dim,): the extremes of every coordinate."""
-    axes = np.eye(normals.shape[1])
-    lower = [_least(axis, normals, offsets)[0] for axis in axes]
-    upper = [-_least(-axis, normals, offsets)[0] for axis in axes]
-    return np.array(lower), np.array(upper)
+def _moved(normals: Floats, offsets: Floats, origin: Floats) -> Floats:
+    """Return right-hand sides (m,) for points counted from ``origin``, in extended precision."""
+    exact = np.longdouble
+    return np.asarray(
+        offsets.astype(exact) - (normals.astype(exact) * origin.astype(exact)).sum(axis=1),
+        dtype=np.float64,
+    )
 
 
-def _largest_ball(normals: Floats, offsets: Floats) -> tuple[Floats, float]:
-    """Return the Chebyshev centre (dim,) and its distance to the nearest plane."""
-    dim = normals.shape[1]
-    cost = np.append(np.zeros(dim), -1.0)
-    _, solution = _least(cost, np.column_stack([normals, np.ones(len(normals))]), offsets)
-    return solution[:dim], float(solution[dim])
-
-
-def _least(cost: Floats, normals: Floats, offsets: Floats) -> tuple[float, Floats]:
-    """Minimize ``cost x`` over the polytope, or raise SpaceError."""
-    from scipy.optimize import linprog  # a quarter of a second, which other spaces do without
-
-    found = linprog(cost, A_ub=normals, b_ub=offsets, bounds=(None, None), method='highs')
-    if found.status == 2:
-        raise SpaceError('the polytope must have an inside, but no point holds all of a x <= b')
-    if found.status == 3:
-        raise SpaceError('the polytope must be bounded, but a x < b goes on for ever')
-    if found.status != 0:
-        raise SpaceError(f'the polytope could not be measured: {found.message}')
-    return float(found.fun), found.x
-
-
-@contains.register(PolytopeData)
-@kernel
-def _contains(polytope, x):
-    return _holds(polytope, x, False)
-
-
-@touches.register(PolytopeData)
-@kernel
-def _touches(polytope, x):
-    return _holds(polytope, x, True)
-
-
-@first_exit.register(PolytopeData)
-@kernel
-def _first_exit(polytope, x, u, t, enough):
-    lower, upper = _span(polytope, x, u, False)
-    return upper if lower < t < upper else t
-
-
-@first_entry.register(PolytopeData)
-@kernel
-def _first_entry(polytope, x, u, t):
-    lower, upper = _span(polytope, x, u, True)
-    return max(t, lower) if t <= upper else math.inf
-
-
-@kernel
-def _holds(polytope, x, closed):
-    for k in range(len(polytope.offsets)):
-        slack = _slack(polytope, k, x)
-        if not (slack > 0.0 or (closed and slack == 0.0)):
-            return False
-    return True
-
-
-@kernel
-def _span(polytope, x, u, closed):
-    """Cut the line with every plane."""
-    first, last = -math.inf, math.inf
-    for k in range(len(polytope.offsets)):
-        slack, rate = _slack(polytope, k, x), _rate(polytope, k, u)
-        if rate > 0.0:
-            last = min(last, slack / rate)
-        elif rate < 0.0:
-            first = max(first, slack / rate)
-        elif not (slack > 0.0 or (closed and slack == 0.0)):
-            return math.inf, -math.inf
-    if first < last or (closed and first == last):
-        return first, last
-    return math.inf, -math.inf
-
-
-@kernel
-def _slack(polytope, k, x):
-    """Distance from ``x`` to plane ``k``; below 0 beyond it."""
-    return polytope.offsets[k] - _rate(polytope, k, x)
-
-
-@kernel
-def _rate(polytope, k, u):
-    """How fast a line along ``u`` approaches plane ``k``."""
-    rate = 0.0
-    for i in range(len(u)):
-        rate += polytope.normals[k, i] * u[i]
-    return rate
+def _check_resolved(normals: Floats, offsets: Floats, extent: Reach) -> None:
+    """Raise SpaceError when the distances to the planes are no more than rounding."""
+    distances = offsets - normals @ extent.centre
+    terms = np.abs(normals) @ (np.abs(extent.centre) + extent.inner) + np.abs(offsets)
+    if not (distances > THINNEST * terms).all():
+        k = int(np.argmin(distances / terms))
+        raise SpaceError(
+            f'the polytope is too thin: {distances[k]:g} from its middle to a plane, which is '
+            f'less than {THINNEST:g} of coordinates of {terms[k]:g}; turn and scale the '
+            f'coordinates so that its sides are of about the same length'
+        )

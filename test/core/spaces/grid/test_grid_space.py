@@ -50,6 +50,26 @@ def test_a_radius_of_whole_cells_reaches_the_cell_at_that_distance():
     np.testing.assert_array_equal(np.flatnonzero(~space.blocked[0]), [0, 8])
 
 
+@pytest.mark.parametrize('resolution', [0.05, 0.025, 0.1, 0.03, 0.0254, 0.5])
+def test_lengths_of_single_precision_are_the_decimals_that_they_stand_for(resolution: float):
+    """A message carries .05 as .05000000074505806, which would cost a ring of inflation."""
+    occupied = maps.speckle(40, 40, 0.02, seed=8)
+    single = float(np.float32(resolution))
+    for cells in range(1, 13):
+        radius = round(cells * resolution, 6)
+        expected = GridSpace.from_blocked(occupied, resolution, robot_radius=radius)
+        for side, length in ((single, radius), (single, np.float32(radius))):
+            space = GridSpace.from_blocked(occupied, side, robot_radius=float(length))
+            assert space.frame == expected.frame
+            assert space.robot_radius == expected.robot_radius == radius
+            np.testing.assert_array_equal(space.blocked, expected.blocked)
+
+
+@pytest.mark.parametrize('resolution', [1 / 3, 0.123456789, 2.0**-12, 1.0, 1e-30, 1e30])
+def test_lengths_of_double_precision_are_left_alone(resolution: float):
+    assert GridSpace.from_blocked([[False]], resolution).resolution == resolution
+
+
 def test_unknown_cells_and_the_edge_of_the_map_are_not_inflated():
     data = np.zeros((9, 9), dtype=np.int8)
     data[4, 4] = -1

@@ -1,0 +1,212 @@
+"""
+Compiled spaces that call functions of the user: chords by search, or from a function.
+
+Where only the membership of points is known, a line is searched: a point is tested at every
+``resolution`` of the way, and where the answer changes the change is located by bisection.
+"""
+
+from collections.abc import Callable
+import math
+from typing import Any, NamedTuple
+
+from hnr_planner.core.checks import Floats
+from hnr_planner.core.kernels.kernel import kernel
+from hnr_planner.core.lengths import norm
+from hnr_planner.core.spaces.bounds import box_span
+from hnr_planner.core.spaces.callbacks import address, ask, callback, OracleError
+from hnr_planner.core.spaces.primitives import (
+    contains,
+    first_entry,
+    first_exit,
+    segment_is_free,
+    touches,
+)
+import numpy as np
+
+
+class OracleData(NamedTuple):
+    """
+    A compiled space that calls functions.
+
+    Attributes
+    ----------
+    lower, upper : (dim,)
+        Bounds: functions are not asked about points outside.
+    origin : (dim,)
+        Origin of the kernel frame in the frame of the functions.
+    resolution : float
+        Distance between two points of a line that are tested.
+    closeness : float
+        Distance within which the end of a chord is located.
+    membership : int
+        Address of the function of a point that returns whether it is free.
+    chord : int
+        Address of the function of a point and a direction that returns how far the line is free;
+        0 for none.
+    motion : int
+        Address of the function of two points that returns whether the segment is free; 0 for none.
+
+    """
+
+    lower: Floats
+    upper: Floats
+    origin: Floats
+    resolution: float
+    closeness: float
+    membership: int
+    chord: int
+    motion: int
+
+
+class OracleFunctions:
+    """
+    Functions that kernels call by address; keep it for as long as its ``data`` is used.
+
+    Parameters
+    ----------
+    lower, upper : (dim,)
+        Bounds, in the frame of the functions.
+    resolution, closeness : float
+        As in ``OracleData``.
+    contains : callable
+        Of a point (dim,): whether it is free. Compiled by numba or not, like the others.
+    chord : callable or None
+        Of a point (dim,) and a direction (dim,): the parameter at which the ray leaves the space.
+    is_motion_valid : callable or None
+        Of two points (dim,): whether the segment between them is free.
+
+    Attributes
+    ----------
+    data : OracleData
+        The compiled space, in the frame of the functions.
+
+    """
+
+    def __init__(
+        self,
+        lower: Floats,
+        upper: Floats,
+        resolution: float,
+        closeness: float,
+        *,
+        contains: Callable[[Floats], Any],
+        chord: Callable[[Floats, Floats], Any] | None = None,
+        is_motion_valid: Callable[[Floats, Floats], Any] | None = None,
+    ) -> None:
+        self._called_back = (
+            callback(contains, 1),
+            callback(chord, 2) if chord else None,
+            callback(is_motion_valid, 2) if is_motion_valid else None,
+        )
+        addresses = (address(each) if each else 0 for each in self._called_back)
+        origin = np.zeros(len(lower))
+        self.data = OracleData(lower, upper, origin, resolution, closeness, *addresses)
+
+
+@contains.register(OracleData)
+@touches.register(OracleData)
+@kernel
+def _contains(oracle, x):
+    """Return whether ``x`` is free; the boundary is what the function says it is."""
+    return _is_in(oracle, x, x, 0.0, np.empty(len(x) + 1))
+
+
+@first_exit.register(OracleData)
+@kernel
+def _first_exit(oracle, x, u, t, horizon):
+    """Ask the chord where a function knows it; else search the line."""
+    room = np.empty(len(x) + 1)
+    if not _is_in(oracle, x, u, t, room):
+        return t
+    _, last = box_span(oracle.lower, oracle.upper, x, u)
+    if oracle.chord != 0:
+        return min(t + _ask_chord(oracle, x, u, t), last)
+    step, before = oracle.resolution / norm(u), t
+    while before <= horizon:
+        s = min(before + step, last)
+        if s == last or not _is_in(oracle, x, u, s, room):
+            return _bisect(oracle, x, u, before, s, room)
+        before = s
+    return before
+
+
+@first_entry.register(OracleData)
+@kernel
+def _first_entry(oracle, x, u, t):
+    """Search the line within the bounds for a point that is free."""
+    room = np.empty(len(x) + 1)
+    if _is_in(oracle, x, u, t, room):
+        return t
+    first, last = box_span(oracle.lower, oracle.upper, x, u)
+    step, before = oracle.resolution / norm(u), max(t, first)
+    while before < last:
+        s = min(before + step, last)
+        if _is_in(oracle, x, u, s, room):
+            return _bisect(oracle, x, u, before, s, room)
+        before = s
+    return math.inf
+
+
+@segment_is_free.register(OracleData)
+@kernel
+def _segment_is_free(oracle, a, b):
+    """Ask the function of two points where there is one; else compare with the chord."""
+    if oracle.motion != 0:
+        n = len(a)
+        ends, answer = np.empty(2 * n), np.empty(1)
+        for i in range(n):
+            ends[i], ends[n + i] = a[i] + oracle.origin[i], b[i] + oracle.origin[i]
+        if ask(oracle.motion, ends, answer) != 0:
+            raise OracleError
+        return answer[0] != 0.0
+    if not (_contains(oracle, a) and _contains(oracle, b)):
+        return False
+    u = b - a
+    return not u.any() or _first_exit(oracle, a, u, 0.0, 1.0) > 1.0
+
+
+@kernel
+def _bisect(oracle, x, u, before, after, room):
+    """Return the first parameter found at which the answer is no longer that at ``before``."""
+    was_in = _is_in(oracle, x, u, before, room)
+    closeness = oracle.closeness / norm(u)
+    while after - before > closeness:
+        middle = before + (after - before) / 2.0
+        if not before < middle < after:
+            break
+        if _is_in(oracle, x, u, middle, room) == was_in:
+            before = middle
+        else:
+            after = middle
+    return after
+
+
+@kernel
+def _is_in(oracle, x, u, s, room):
+    """
+    Return whether ``x + s u`` lies within the bounds and is free.
+
+    ``room`` (dim + 1,) is working memory for the point and the answer.
+    """
+    n = len(x)
+    for i in range(n):
+        room[i] = x[i] + s * u[i] if s != 0.0 else x[i]
+        if not oracle.lower[i] < room[i] < oracle.upper[i]:
+            return False
+        room[i] += oracle.origin[i]
+    point, answer = room[:n], room[n:]
+    if ask(oracle.membership, point, answer) != 0:
+        raise OracleError
+    return answer[0] != 0.0
+
+
+@kernel
+def _ask_chord(oracle, x, u, t):
+    """Return how far the ray from ``x + t u`` along ``u`` is free, in units of ``|u|``."""
+    n = len(x)
+    line, answer = np.empty(2 * n), np.empty(1)
+    for i in range(n):
+        line[i], line[n + i] = x[i] + t * u[i] + oracle.origin[i], u[i]
+    if ask(oracle.chord, line, answer) != 0:
+        raise OracleError
+    return answer[0] if answer[0] > 0.0 else 0.0
