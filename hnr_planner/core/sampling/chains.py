@@ -154,7 +154,7 @@ class Chains:
 
     @property
     def zero_chords(self) -> NDArray[np.int64]:
-        """Number of steps of each chain (n_chains,) with a chord below the space's margin."""
+        """Number of steps of each chain (n_chains,) with a chord below the space's zero length."""
         return self.counts[:, ZERO_CHORDS]
 
     @property

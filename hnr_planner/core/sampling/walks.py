@@ -37,7 +37,7 @@ from hnr_planner.core.spaces.primitives import first_exit
 from hnr_planner.core.spaces.space import Space
 
 #: Counters of a chain, by column: steps taken; steps that moved it; chords shorter than the
-#: space's margin; draws rejected because they rounded onto the boundary; steps since the last
+#: space's zero length; draws rejected because they rounded onto the boundary; steps since the last
 #: move.
 STEPS, MOVES, ZERO_CHORDS, REDRAWS, STILL = range(5)
 N_COUNTS = 5
@@ -136,15 +136,15 @@ def make_walk(walk: str | Walk) -> Walk:
 
 
 class HitAndRunStep(NamedTuple):
-    """Hit-and-Run for kernels: chords shorter than ``margin`` count as zero chords."""
+    """Hit-and-Run for kernels: chords shorter than ``zero_length`` count as zero chords."""
 
-    margin: float
+    zero_length: float
 
 
 class CoordinateHitAndRunStep(NamedTuple):
-    """Coordinate Hit-and-Run for kernels: shorter chords than ``margin`` are zero chords."""
+    """Coordinate Hit-and-Run for kernels: shorter chords than ``zero_length`` are zero chords."""
 
-    margin: float
+    zero_length: float
 
 
 class BallStep(NamedTuple):
@@ -184,7 +184,7 @@ def take_step(walk: Any, space: Any, cache: Any, u: Any, rng: Any, counts: Any) 
 def _hit_and_run(walk, space, cache, u, rng, counts):
     """Move to a uniform point of the chord in a uniform direction."""
     draw_direction(rng, u)
-    return _move_on_chord(walk.margin, space, cache, u, NO_AXIS, rng, counts)
+    return _move_on_chord(walk.zero_length, space, cache, u, NO_AXIS, rng, counts)
 
 
 @take_step.register(CoordinateHitAndRunStep)
@@ -193,7 +193,7 @@ def _coordinate_hit_and_run(walk, space, cache, u, rng, counts):
     """Move to a uniform point of the chord along a uniform axis."""
     axis = math.floor(uniform(rng) * len(u))
     u[axis] = 1.0
-    moved = _move_on_chord(walk.margin, space, cache, u, axis, rng, counts)
+    moved = _move_on_chord(walk.zero_length, space, cache, u, axis, rng, counts)
     u[axis] = 0.0
     return moved
 
@@ -214,10 +214,10 @@ def _ball_walk(walk, space, cache, u, rng, counts):
 
 
 @inlined
-def _move_on_chord(margin, space, cache, u, axis, rng, counts):
+def _move_on_chord(zero_length, space, cache, u, axis, rng, counts):
     """Move to a uniform point of the chord along ``u``; return whether the chain moved."""
     lower, upper = chord_cached(space, cache, u, axis)
-    if upper - lower >= margin:
+    if upper - lower >= zero_length:
         return _move_between(space, cache, u, axis, lower, upper, rng, counts)
     return _move_on_zero_chord(space, cache, u, axis, lower, upper, rng, counts)
 
