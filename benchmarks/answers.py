@@ -180,7 +180,7 @@ class _Caller:
         return node
 
     def meet_ready_made(self, goal: PoseStamped) -> None:
-        """Request the ready-made path until it arrives: before discovery ends, answers get lost."""
+        """Request the ready-made path until it comes: before discovery ends, answers get lost."""
         deadline = time.monotonic() + SOON
         while True:
             with suppress(TimeoutError):
