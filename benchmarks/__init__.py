@@ -1,1 +1,1 @@
-"""Side by side with OMPL and grid search: ``python -m benchmarks`` (``make bench``)."""
+"""Compare with OMPL, grid search and hopsy: ``python -m benchmarks`` (``make bench``)."""

@@ -1,5 +1,5 @@
 """
-Ours, OMPL and grid search side by side: ``python -m benchmarks [--quick]``.
+Compare with OMPL, grid search and hopsy: ``python -m benchmarks [--quick]``.
 
 HNR_MAPS names a folder of further maps. The full run writes ``benchmarks/results.md`` and
 ``docs/benchmark.png``; a quick one writes into ``build/benchmarks`` and is good for a look only.
@@ -76,7 +76,7 @@ def main() -> None:
 
 
 def _race(problem: Problem, taking_part: list[Competitor], quick: bool) -> Standing:
-    """Run one problem, and say which paths were no good."""
+    """Run one problem, and print which paths were invalid."""
     began = time.perf_counter()
     standing = race(problem, taking_part, QUICK if quick else FULL)
     say(f'{problem.name}: {time.perf_counter() - began:.0f} s')

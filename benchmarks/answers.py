@@ -1,5 +1,5 @@
 """
-What an answer costs besides its search, and what rclpy itself needs to send one as large.
+Measure what an answer costs besides its search, and what rclpy alone needs to send it.
 
 Two processes answer the same service in turns: the planning node, and a node that does nothing
 but send a ready-made path with as many poses. One client times both, from its call to the answer
@@ -57,7 +57,7 @@ N_PAIRS, N_PAIRS_QUICK = 200, 20
 
 
 class Pair(NamedTuple):
-    """Times [s]: an answer of the planning node, the search in it, and the ready-made answer."""
+    """Times [s] of an answer of the planning node, of its search, and of the ready-made answer."""
 
     answer: float
     search: float
@@ -127,7 +127,7 @@ def _serpentine() -> NDArray[np.int8]:
 
 @contextmanager
 def _quiet_domain(folder: str) -> Iterator[None]:
-    """Keep the nodes away from all others, and their logs in a folder."""
+    """Run nodes in a ROS domain of their own, with their logs in a folder."""
     with own_domain() as domain:
         os.environ['ROS_DOMAIN_ID'] = str(domain)
         os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'LOCALHOST'
@@ -137,7 +137,7 @@ def _quiet_domain(folder: str) -> Iterator[None]:
 
 @contextmanager
 def _process(*module_and_arguments: str) -> Iterator[None]:
-    """Run a module for the length of a `with` block."""
+    """Run a module for the duration of a ``with`` block."""
     process = subprocess.Popen([sys.executable, '-m', *module_and_arguments])
     try:
         yield
@@ -147,7 +147,7 @@ def _process(*module_and_arguments: str) -> Iterator[None]:
 
 
 class _Caller:
-    """The client; while it waits for an answer it does nothing else that could delay it."""
+    """The client; while it waits for an answer it does nothing that could delay it."""
 
     def __init__(self) -> None:
         self._context = Context()
@@ -173,14 +173,14 @@ class _Caller:
         self._maps.publish(message)
 
     def listener(self) -> Node:
-        """Return a node that takes part in samples and markers, and leaves them unread."""
+        """Return a node that subscribes to samples and markers, and ignores them."""
         node = Node('listener', context=self._context)
         for kind, topic in ((PointCloud2, 'samples'), (MarkerArray, 'markers')):
             node.create_subscription(kind, f'/hnr_planner/{topic}', _ignore, LATCHED, raw=True)
         return node
 
     def meet_ready_made(self, goal: PoseStamped) -> None:
-        """Ask for the ready-made path until it comes: before all are known, answers get lost."""
+        """Request the ready-made path until it comes: before discovery ends, answers get lost."""
         deadline = time.monotonic() + SOON
         while True:
             with suppress(TimeoutError):
@@ -190,7 +190,7 @@ class _Caller:
                 raise TimeoutError('the ready-made path does not come')
 
     def pair(self, goal: PoseStamped) -> Pair:
-        """Time both, one after the other."""
+        """Measure both nodes, one after the other."""
         path, answer = self.ask(self.planner, goal)
         search = self._search_time(stamp_of(path))
         time.sleep(PAUSE)
@@ -200,7 +200,7 @@ class _Caller:
     def ask(
         self, client: Client, goal: PoseStamped, patience: float = SOON
     ) -> tuple[PathMessage, float]:
-        """Ask for a path and return it, and the time [s] that it took to come."""
+        """Request a path; return it and the round-trip time [s]."""
         client.wait_for_service(SOON)
         request = GetPlan.Request(start=pose(*START), goal=goal)
         began = time.perf_counter()
@@ -214,7 +214,7 @@ class _Caller:
         return future.result().plan, elapsed
 
     def _search_time(self, stamp: tuple[int, int]) -> float:
-        """Return how long [s] the search for an answer took."""
+        """Return the time of the search for an answer [s]."""
         deadline = time.monotonic() + SOON
         while stamp not in self._search_times:
             assert time.monotonic() < deadline, 'no outcome for an answer'
@@ -233,4 +233,4 @@ def _executor(node: Node) -> SingleThreadedExecutor:
 
 
 def _ignore(_message: bytes) -> None:
-    """Take a message and do nothing with it."""
+    """Ignore a message."""

@@ -1,4 +1,4 @@
-"""What distance from walls costs: length against least and mean clearance."""
+"""Measure what clearance costs: length against least and mean clearance."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ are the robot's centre's: with a radius of .22 m a clearance of .1 m is kept by 
 
 
 class Trade(NamedTuple):
-    """What a clearance asked for gave on a map."""
+    """Results for one requested clearance on one map."""
 
     problem: str
     clearance: float
@@ -53,7 +53,7 @@ def trades(chosen: list[Problem]) -> Iterator[Trade]:
 
 
 def _run(space: GridSpace, ends: Floats, seed: int, clearance: float) -> list[float]:
-    """Length [m], least, mean and kept clearance, and the time [s] of one request."""
+    """Return length, least, mean and kept clearance [m], and the time [s] of one request."""
     began = time.perf_counter()
     path = plan(space, *ends, seed=seed, clearance=clearance).path
     seconds = time.perf_counter() - began
@@ -65,14 +65,14 @@ def _run(space: GridSpace, ends: Floats, seed: int, clearance: float) -> list[fl
 
 
 def _points_along(path: Floats, spacing: float) -> Floats:
-    """Points (k, 2) on a path, evenly spread."""
+    """Return evenly spaced points (k, 2) on a path."""
     at = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(path, axis=0).T))])
     points = np.arange(0.0, at[-1], spacing)
     return np.stack([np.interp(points, at, path[:, i]) for i in range(2)], axis=1)
 
 
 def clearance(bench: Bench) -> Section:
-    """Measure the trade on every map of a building."""
+    """Measure length against clearance on every map of a building."""
     rows = []
     for trade in trades([problem for problem in bench.problems if not problem.is_spiral]):
         show(f'clearance {trade.clearance:g} m on {trade.problem}')

@@ -1,4 +1,4 @@
-"""Every competitor on every problem."""
+"""Section: every competitor on every problem."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ HEAD = (
 
 
 def every_problem(bench: Bench) -> Section:
-    """List everybody on every problem."""
+    """Tabulate every competitor on every problem."""
     parts = []
     for standing in bench.standings:
         parts += [f'### {standing.problem.name}', _words(standing), table(HEAD, _rows(standing))]

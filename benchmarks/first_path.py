@@ -1,4 +1,4 @@
-"""The time to the first path against OMPL's, problem by problem."""
+"""Section: the time to the first path against OMPL's, problem by problem."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ ASKED = (
 
 
 class Duel(NamedTuple):
-    """Ours against OMPL's: ``fastest`` is the best of its planners there, after the fact."""
+    """Times of ours and of OMPL's; ``fastest`` is the best of its planners on that problem."""
 
     problem: str
     auto: Summary
@@ -45,18 +45,18 @@ class Duel(NamedTuple):
 
     @property
     def slower(self) -> bool:
-        """Whether ours takes longer than the fastest and a call."""
+        """Return whether ours takes longer than the fastest and a call."""
         return self.auto.seconds > self.fastest_seconds + CALL
 
     @property
     def above_half(self) -> bool:
-        """Whether ours takes more than half of RRTConnect's time and a call."""
+        """Return whether ours takes more than half of RRTConnect's time and a call."""
         limit = HALF * self.rival.seconds + CALL
         return self.rival.seconds > NO_MATCH and self.auto.seconds > limit
 
     @property
     def p95_above(self) -> bool:
-        """Whether the slow runs of ours take longer than those of RRTConnect."""
+        """Return whether the 95th percentile of ours is above that of RRTConnect."""
         p95 = self.rival.seconds_p95
         return p95 > NO_MATCH and self.auto.seconds_p95 > p95
 

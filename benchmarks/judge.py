@@ -1,4 +1,4 @@
-"""The judge: every path of everybody is held against the map by the same exact check."""
+"""Judge the paths: every path of every competitor is checked exactly against the map."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class Record(NamedTuple):
 
 @dataclass
 class Judge:
-    """Judges one competitor's runs on one problem, and keeps what there is to complain of."""
+    """Judge of one competitor's runs on one problem, which keeps the faults it finds."""
 
     problem: Problem
     complaints: list[str] = field(default_factory=list)
@@ -53,7 +53,7 @@ class Judge:
         return Record(number, run.seconds, length, clearance, True)
 
     def _ends(self, number: int, path: np.ndarray) -> list[str]:
-        """Complain of ends that were not asked for; those that were are put in to the bit."""
+        """Report wrong ends; replace ends that are right up to rounding by the requested ones."""
         ends = self.problem.requests[number]
         if np.abs(path[[0, -1]] - ends).max() > NEAR:
             return [f'the path from {path[0]} to {path[-1]} has other ends than {ends}']

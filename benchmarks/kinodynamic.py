@@ -1,4 +1,4 @@
-"""Robots with inertia: the double integrator against OMPL's control planners."""
+"""Section: robots with inertia, the double integrator against OMPL's control planners."""
 
 from __future__ import annotations
 
@@ -57,16 +57,16 @@ class Row(NamedTuple):
 
     @property
     def fastest(self) -> str:
-        """The fastest of OMPL's planners here, after the fact."""
+        """The fastest of OMPL's planners on this course."""
         return min((name for name in self.first if name != 'ours'), key=self.seconds)
 
     def success(self, planner: str) -> float:
-        """Part of the runs that found a trajectory."""
+        """Fraction of the runs that found a trajectory."""
         return float(np.mean([run.duration < math.inf for run in self.first[planner]]))
 
 
 def kinodynamic(bench: Bench) -> Section:
-    """Race on corridors and on two robot maps."""
+    """Compare on corridors and on two robot maps."""
     title = 'Robots with inertia'
     try:
         session = ControlSession()
@@ -106,7 +106,7 @@ def kinodynamic(bench: Bench) -> Section:
 
 
 def _courses(bench: Bench) -> list[Problem]:
-    """Serpentines, a Z and two robot maps; few requests on each."""
+    """Return serpentines, a Z and two robot maps, with few requests on each."""
     corridors = {f'serpentine {width:g}': serpentine(width) for width in (1.0, 2.0, 3.0)}
     corridors['Z 1.5'] = slanted_z(1.5)
     courses = [
@@ -122,7 +122,7 @@ def _courses(bench: Bench) -> list[Problem]:
 
 
 def _measure(course: Problem, session: ControlSession, quick: bool) -> Row:
-    """Take turns, so that whatever else the machine does meets all alike."""
+    """Measure in turns, so that other load on the machine affects all alike."""
     runs = RUNS_QUICK if quick else RUNS
     row = Row(course.name, {name: [] for name in ('ours', *OMPL)}, [], [])
     session.use(course.blocked_in_kernel)
@@ -171,7 +171,7 @@ def _ompl(
 
 
 def _judged(course: Problem, times: Floats, states: Floats, controls: Floats) -> bool:
-    """Say whether the independent checker finds nothing wrong."""
+    """Return whether the independent checker finds no fault."""
     scale = course.space.scale
     limits = {
         'max_acceleration': SYSTEM.max_acceleration / scale,

@@ -1,4 +1,4 @@
-"""Maps that anybody can make again: a warehouse, a maze, a yard full of clutter, a slanted Z."""
+"""Generate maps: a warehouse, a maze, a yard full of clutter, a slanted Z."""
 
 from __future__ import annotations
 

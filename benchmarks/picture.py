@@ -1,4 +1,4 @@
-"""The picture: length against time on the maps, and time against width on the spirals."""
+"""Draw the picture: length against time on maps, time against width on spirals."""
 
 from __future__ import annotations
 
@@ -88,7 +88,7 @@ def draw(standings: list[Standing], file: Path) -> None:
 
 
 def _on_maps(standings: list[Standing], groups: tuple[str, ...]) -> list[Line]:
-    """Time and length after one run or step and after more, medians over the maps."""
+    """Return time and length after each step, medians over the maps."""
     lines: list[Line] = []
     for k, label, group in _competitors(standings):
         if group not in groups and label not in SHOWN:
@@ -133,7 +133,7 @@ def _competitors(standings: list[Standing]) -> list[tuple[int, str, str]]:
 
 
 def _colour(label: str, group: str, lines: list[Line]) -> str:
-    """Choose the next colour of those for ours, or for all others."""
+    """Return the next unused colour, of those for ours or for the others."""
     colours = OURS if group == 'ours' else OTHERS
     used = {colour for _, colour, *_ in lines}
     return next((colour for colour in colours if colour not in used), 'black')
@@ -151,7 +151,7 @@ def _plot(axes: Axes, lines: list[Line], marker: str = '') -> list[tuple[str, st
 
 
 def _name(axes: Axes, ends: list[tuple[str, str, float, float]]) -> None:
-    """Write a name beside the end of each line, where none stands yet."""
+    """Write a name beside the end of each line, without overlap."""
     points = axes.transData.transform([(x, y) for _, _, x, y in ends] or np.empty((0, 2)))
     taken = [Bbox.from_bounds(x - 3, y - 3, 6, 6) for x, y in points]
     for name, colour, x, y in ends:

@@ -1,4 +1,4 @@
-"""One core for everything that runs, so that nobody has more of the machine than others."""
+"""Run everything on one core, so that no competitor has more of the machine than others."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import os
 
 @contextmanager
 def on_one_core() -> Iterator[None]:
-    """Let everybody, programs that are started here too, run on one core."""
+    """Restrict this process and its children to one core inside the block."""
     cores = os.sched_getaffinity(0)
     os.sched_setaffinity(0, {max(cores)})
     yield

@@ -39,7 +39,7 @@ class Problem:
 
     @property
     def is_spiral(self) -> bool:
-        """Whether it is one of the spirals."""
+        """Return whether it is one of the spirals."""
         return self.name.startswith('spiral')
 
     def with_requests(self, requests: Floats) -> Problem:
@@ -53,7 +53,7 @@ class Problem:
 
 
 def problems(quick: bool) -> list[Problem]:
-    """Build all problems, or few of them for a quick look."""
+    """Build all problems, or few of them for a quick run."""
     maps = {'warehouse': warehouse(), 'maze': maze(), 'clutter': clutter()}
     maps |= {file.stem: load_map(file) for file in _files()}
     if quick:
@@ -72,7 +72,7 @@ def _files() -> list[Path]:
 
 
 def missing_maps() -> list[str]:
-    """Say that only the maps that anybody has take part, where it is so."""
+    """Return a note where HNR_MAPS adds no maps to the generated ones."""
     if len(_files()) > 1:
         return []
     return ['Maps of others: HNR_MAPS names no folder that holds any (.yaml of map_server, .map).']

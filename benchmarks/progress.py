@@ -1,4 +1,4 @@
-"""Progress on the terminal: one line that is written over, in a log a line for each news."""
+"""Print progress: one line that is overwritten on a terminal, single lines in a log."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ _said_last = [0.0]
 
 
 def show(news: str) -> None:
-    """Say what is going on now."""
+    """Print what is going on now."""
     if sys.stderr.isatty():
         print(f'\r\033[K{news}', end='', file=sys.stderr, flush=True)
     elif time.monotonic() - _said_last[0] > PATIENCE:
@@ -20,7 +20,7 @@ def show(news: str) -> None:
 
 
 def say(text: str) -> None:
-    """Say something that stays."""
+    """Print a line that stays."""
     clear = '\r\033[K' if sys.stderr.isatty() else ''
     print(clear, end='', file=sys.stderr, flush=True)
     print(text, flush=True)

@@ -1,4 +1,4 @@
-"""What is measured of ours alone: overhead, getting a map ready, growth, keeping to limits."""
+"""Section: ours alone; overhead, preparing a map, growth with its size, keeping to limits."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ LOST = 0.2e-3
 
 
 def properties(bench: Bench) -> Section:
-    """Measure one after the other."""
+    """Measure all properties."""
     measured = []
     for verdict in _measure(bench.quick):
         show(f'{verdict.what}: {verdict.measured}')
@@ -150,7 +150,7 @@ def _cancel(cancel: threading.Event, due: list[float]) -> None:
 
 class _Lateness:
     """
-    How late calls came back [s].
+    Delays with which calls returned [s].
 
     What is asked holds for an idle core, so calls that did not have one for longer than LOST are
     counted apart.

@@ -1,7 +1,7 @@
 """
-The race: every competitor on every problem, in turns, every path judged.
+Run every competitor on every problem, in turns, and judge every path.
 
-Turns are short and go round, so that whatever else the machine does meets all alike. A turn is a
+Turns are short and rotate, so that other load on the machine affects all alike. A turn is a
 few requests in a row: what comes first after somebody else finds cold caches, the others do not.
 Those that can use a given time run once more with one time after the other.
 """
@@ -28,7 +28,7 @@ SEEDS_IN_TIME = 4
 
 class Effort(NamedTuple):
     """
-    How much to measure.
+    Amount of measurement.
 
     Attributes
     ----------
@@ -71,7 +71,7 @@ class Entry:
     spent: float = 0.0
 
     def wants_more(self, effort: Effort) -> bool:
-        """Say whether another turn is due."""
+        """Return whether another turn is due."""
         competitor, n_runs = self.competitor, len(self.records)
         most = effort.runs_first if competitor.aim == 'first' else effort.runs_short
         least = min(competitor.runs_least, effort.runs_least)
@@ -112,7 +112,7 @@ class Standing:
 
 
 def race(problem: Problem, taking_part: list[Competitor], effort: Effort) -> Standing:
-    """Let all run on one problem."""
+    """Run all competitors on one problem."""
     entries = [Entry(competitor, Judge(problem)) for competitor in taking_part]
     show(f'{problem.name}: looking for short paths')
     best = _best_known(problem, effort.seconds_best)
@@ -146,7 +146,7 @@ def _take_turns(problem: Problem, entries: list[Entry], effort: Effort) -> None:
 
 
 def _best_known(problem: Problem, seconds: float) -> Floats:
-    """Short lengths (k,) [m], by long searches and from the shortest path over cells."""
+    """Return short lengths (k,) [m], by long searches and from the shortest path over cells."""
     space, lengths = problem.space, []
     for start, goal in problem.requests:
         long = plan(space, start, goal, optimize_for=seconds, time_limit=10.0, seed=0)

@@ -1,5 +1,5 @@
 """
-A node that sends a ready-made path: ``python -m benchmarks.ready_made N_POSES``.
+Run a node that sends a ready-made path: ``python -m benchmarks.ready_made N_POSES``.
 
 It is what rclpy itself needs for an answer: a request is taken, and a message that was there
 before is sent back by an executor with threads, such as every node has that stays responsive.

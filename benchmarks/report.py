@@ -1,4 +1,4 @@
-"""The report: what was run on what, then what is asked, then section after section."""
+"""Write the report: the machine, the competitors, the targets, and the sections."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ def report(bench: Bench, sections: list[Section], seconds: float, picture: str) 
 
 
 def missing_words(missing: list[str]) -> str:
-    """Say what did not take part, and why."""
+    """Return a paragraph on the competitors that did not run, and why."""
     return '\n'.join(f'**Missing.** {reason}' for reason in missing)
 
 

@@ -1,5 +1,5 @@
 """
-Many requests on one map: what a roadmap costs to build and mend, and what its answers are worth.
+Section: roadmaps; what they cost to build and repair, and the quality of their answers.
 
 A request is the whole call of ``plan()`` from Python; lengths are ratios over the shortest path
 known, from long searches and from a roadmap of twice the draws. A map is mended after a block of
@@ -31,7 +31,7 @@ Result = TypeVar('Result')
 
 
 class Row(NamedTuple):
-    """One map: seconds to build and mend, nodes, seconds of the requests, ratios of lengths."""
+    """Results on one map: times [s] to build, repair and answer, nodes, ratios of lengths."""
 
     name: str
     build: float
@@ -43,7 +43,7 @@ class Row(NamedTuple):
 
 
 def measure(problem: Problem, searches: int) -> Row:
-    """Build, ask, change the map and mend."""
+    """Build a roadmap, answer requests, change the map and repair the roadmap."""
     space = problem.space
     roadmap, build = _timed(lambda: Roadmap.build(space, seed=SEED))
     grown = roadmap.grow()
@@ -107,7 +107,7 @@ def _timed(work: Callable[[], Result]) -> tuple[Result, float]:
 
 
 def _with_block(space: GridSpace) -> GridSpace:
-    """Return the same map with a block in its largest part."""
+    """Return the same map with a block in its largest component."""
     rows, columns = np.nonzero(space.largest_component())
     k = np.random.default_rng(SEED).integers(len(rows))
     top, left = max(rows[k] - BLOCK // 2, 0), max(columns[k] - BLOCK // 2, 0)

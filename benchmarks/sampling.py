@@ -1,5 +1,5 @@
 """
-Uniform sampling against hopsy: steps a second, effective draws a second, and imports.
+Section: uniform sampling against hopsy; steps and effective draws a second, import time.
 
 Both get the same facets, start and number of steps in one call, and take turns; times are of the
 processor, not of the clock, and a rate is the median of its turns. hopsy samples convex polytopes
@@ -105,7 +105,7 @@ POLYTOPES += [cross_polytope(dim) for dim in (2, 10)]
 
 
 def ours(space: Space, start: Floats, walk: str, n_chains: int = 1) -> Runner:
-    """Return ours, which goes on from where it was."""
+    """Return a stepper of ours, which continues its chain."""
     chains = [begin_chains(space, start, n_chains=n_chains, seed=1)]
 
     def run(n_draws: int, thin: int) -> Floats:
@@ -116,7 +116,7 @@ def ours(space: Space, start: Floats, walk: str, n_chains: int = 1) -> Runner:
 
 
 def hopsys(hopsy: Any, polytope: Polytope, proposal: str, n_chains: int = 1) -> Runner:
-    """Return hopsy's, likewise."""
+    """Return a stepper of hopsy's, which continues its chain."""
     problem = hopsy.Problem(polytope.a, polytope.b)
     kind = getattr(hopsy, proposal)
     chains = [
@@ -148,14 +148,14 @@ class Duel:
 
     @property
     def verdict(self) -> Verdict:
-        """What is asked and measured."""
+        """Target and measurement."""
         measured = f'{1e-6 / self.ours:.3g} M against {1e-6 / self.hopsys:.3g} M: {self.ratio:.2f}'
         what = f'steps a second, {self.what}'
         return Verdict(what, f'{self.at_least} x', measured, self.ratio >= self.at_least)
 
 
 def duel(what: str, at_least: float, both: tuple[Runner, Runner], n_turns: int) -> Duel:
-    """Let both step in turns."""
+    """Measure both in turns."""
     show(what)
     steps = [_fitting(run) for run in both]
     times: tuple[list[float], list[float]] = [], []
@@ -166,7 +166,7 @@ def duel(what: str, at_least: float, both: tuple[Runner, Runner], n_turns: int) 
 
 
 def _fitting(run: Runner) -> int:
-    """Return how many steps take about a turn."""
+    """Return the number of steps that take about one turn."""
     run(1, 1)
     n_steps = FIRST_TRY
     while (seconds := _timed(lambda: run(1, n_steps))[0]) < 0.2 * TURN:  # noqa: B023
@@ -275,7 +275,7 @@ def imports(n_times: int) -> Iterator[Verdict]:
 
 
 def sampling(bench: Bench) -> Section:
-    """Measure all of it; without hopsy the import alone."""
+    """Measure everything; without hopsy the import alone."""
     n_turns = TURNS_QUICK if bench.quick else TURNS
     verdicts: list[Verdict] = []
     rows: list[list[str]] = []
@@ -307,7 +307,7 @@ def _ess_verdict(polytope: Polytope, ours: list[Rate], hopsys: list[Rate]) -> Ve
 
 
 def _hopsy(bench: Bench) -> Any:
-    """Import hopsy, or say that it is missing."""
+    """Import hopsy, or return None where it is missing."""
     try:
         with warnings.catch_warnings():
             warnings.simplefilter('ignore')

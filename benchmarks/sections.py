@@ -1,5 +1,5 @@
 """
-What a report is made of: sections, each a function of what was run.
+Sections of the report, each a function of the results.
 
 To add one, write a function that takes a ``Bench`` and returns a ``Section``, and list it in
 ``SECTIONS`` of ``__main__``. Its verdicts go into the table at the top of the report.
@@ -19,7 +19,7 @@ import numpy as np
 @dataclass(frozen=True)
 class Bench:
     """
-    What sections have to work with.
+    Input of the sections.
 
     Attributes
     ----------
@@ -41,7 +41,7 @@ class Bench:
 
 
 class Verdict(NamedTuple):
-    """What is asked, what was measured, in words, and whether that is enough."""
+    """Target, measurement as text, and whether the target is reached."""
 
     what: str
     to_reach: str
@@ -50,7 +50,7 @@ class Verdict(NamedTuple):
 
 
 class Section(NamedTuple):
-    """A part of the report: its heading, its body in Markdown, and what it says of the targets."""
+    """A part of the report: heading, body in Markdown, and verdicts."""
 
     title: str
     body: str
@@ -61,14 +61,14 @@ SectionOf = Callable[[Bench], Section]
 
 
 def table(head: str, rows: Iterable[Iterable[str]]) -> str:
-    """Write a table in Markdown; the columns in ``head`` are divided by bars."""
+    """Return a table in Markdown; the columns in ``head`` are separated by bars."""
     names = head.split(' | ')
     lines = [names, ['---'] + ['---:'] * (len(names) - 1), *rows]
     return '\n'.join('| ' + ' | '.join(line) + ' |' for line in lines)
 
 
 def verdict_table(verdicts: list[Verdict]) -> str:
-    """Write what is asked, what was measured and the verdict."""
+    """Return a table of targets, measurements and verdicts."""
     return table(
         'what | to reach | measured | reached',
         ([v.what, v.to_reach, v.measured, 'yes' if v.met else '**no**'] for v in verdicts),
@@ -76,12 +76,12 @@ def verdict_table(verdicts: list[Verdict]) -> str:
 
 
 def milliseconds(seconds: float) -> str:
-    """Write a time with three digits; a dash for none."""
+    """Return a time with three digits; a dash for none."""
     return f'{1e3 * seconds:.3g}' if np.isfinite(seconds) else '-'
 
 
 def ratio(value: float) -> str:
-    """Write a ratio; a dash for none."""
+    """Return a ratio as text; a dash for none."""
     return f'{value:.3f}' if np.isfinite(value) else '-'
 
 

@@ -1,4 +1,4 @@
-"""Length over the best known in a wavefront's time, and the time to within 1 % of it."""
+"""Section: length over the best known in a wavefront's time, and the time to within 1 %."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ MEDIAN, P95 = 1.01, 1.05
 
 
 class Lengths(NamedTuple):
-    """Ours, optimized in the time of a wavefront, and the wavefront, on one problem."""
+    """Results of ours, optimized in the time of a wavefront, and of the wavefront."""
 
     problem: str
     ours: Summary
@@ -22,7 +22,7 @@ class Lengths(NamedTuple):
 
     @property
     def later(self) -> bool:
-        """Whether ours took longer."""
+        """Return whether ours took longer."""
         return self.ours.seconds > max(self.waves.seconds, LEAST_TIME)
 
 

@@ -1,4 +1,4 @@
-"""Numbers from runs: how often, how fast, how short, and how soon short."""
+"""Compute success, time, length and convergence from runs."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ Floats = NDArray[np.float64]
 
 class Summary(NamedTuple):
     """
-    A competitor on one problem.
+    Summary of a competitor on one problem.
 
     Times in seconds, lengths as ratios over the best known; a run without a valid path counts as
     endless in the times, and is left out of the lengths. ``soon`` is the time to a path within
@@ -38,7 +38,7 @@ class Summary(NamedTuple):
 
 
 def summary(entry: Entry, standing: Standing) -> Summary:
-    """Sum up the runs of a competitor."""
+    """Return the summary of the runs of a competitor."""
     records = entry.records
     valid = np.array([np.isfinite(record.length) for record in records])
     seconds = np.where(valid, [record.seconds for record in records], np.inf)
@@ -70,7 +70,7 @@ def quantile(values: Floats, part: float) -> float:
 
 def improvements(entry: Entry, standing: Standing) -> list[tuple[Floats, Floats]]:
     """
-    How the path of each request gets shorter with time: times (k, n) [s] and ratios (k, n).
+    Return times (k, n) [s] and length ratios (k, n) of each request, as they improve.
 
     One that can use a given time is asked anew with more and more of it; k is 1. The others begin
     again with another seed and keep the shortest path: the time is that of all runs so far, and
@@ -105,7 +105,7 @@ def _soon(times: Floats, ratios: Floats) -> Floats:
 
 def course(entry: Entry, standing: Standing) -> tuple[Floats, Floats]:
     """
-    Return how the path gets shorter from step to step: times (k,) [s] and ratios (k,), medians.
+    Return the medians of times (k,) [s] and length ratios (k,) at each step.
 
     A step is one more run, or more time for one that can use it; it counts while half of the
     requests get there.

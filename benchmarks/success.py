@@ -1,4 +1,4 @@
-"""Whether ``auto`` ever fails: many seeds for each of many pairs, on every problem."""
+"""Section: whether ``auto`` ever fails; many seeds for each of many pairs, on every problem."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ SEEDS = 50
 
 
 class Successes(NamedTuple):
-    """Runs on one problem, those with a valid path in time, and the slowest [s]."""
+    """Runs on one problem, those with a valid path in time, and the slowest time [s]."""
 
     problem: str
     runs: int

@@ -1,4 +1,4 @@
-"""Who takes part: ours, OMPL's, grid search. Each answers requests and says how long it took."""
+"""The competitors: ours, OMPL's, grid search. Each answers requests and measures its time."""
 
 from benchmarks.competitors.competitor import (
     Competitor,

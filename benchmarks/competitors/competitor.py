@@ -1,4 +1,4 @@
-"""What a competitor is."""
+"""Define what a competitor is."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ TIME_LIMIT = 1.0
 
 
 class Missing(Exception):
-    """Something cannot take part on this machine; the message says what it lacks."""
+    """A competitor cannot run on this machine; the message says what is missing."""
 
 
 class Run(NamedTuple):
-    """Seconds that it took, and the path (m, 2) [m], (0, 2) for none."""
+    """Time [s], and the path (m, 2) [m], (0, 2) for none."""
 
     seconds: float
     path: Floats
@@ -32,7 +32,7 @@ SolverOf = Callable[[Problem], AbstractContextManager[Solver]]
 @dataclass(frozen=True)
 class Competitor:
     """
-    One that takes part.
+    One participant of the comparison.
 
     Attributes
     ----------
@@ -60,5 +60,5 @@ class Competitor:
 
     @property
     def label(self) -> str:
-        """Its name beside others."""
+        """Name and group, for the report."""
         return f'{self.name} ({self.group})'

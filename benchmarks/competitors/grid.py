@@ -1,4 +1,4 @@
-"""Grid search, ours as it is written in the literature, and nano-astar from PyPI."""
+"""Grid search: our implementations of the literature, and nano-astar from PyPI."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ Search = Callable[[Any, Floats, Floats], Floats]
 
 
 def grid_searches() -> list[Competitor]:
-    """List those that need nothing."""
+    """Return the searches that need no further package."""
     searches: dict[str, Search] = {
         'A*': a_star,
         'A* + string pulling': _taut(a_star),
@@ -29,7 +29,7 @@ def grid_searches() -> list[Competitor]:
 
 
 def nano_a_star() -> list[Competitor]:
-    """List nano-astar, as it comes and with our string pulling, or raise Missing."""
+    """Return nano-astar, alone and with our string pulling, or raise Missing."""
     try:
         from nano_astar import astar
     except ImportError as reason:
@@ -71,7 +71,7 @@ def _taut(search: Search) -> Search:
 
 
 def search_with(search: Search) -> SolverOf:
-    """Time a search without the way between metres and cells."""
+    """Return a solver that times a search without the conversion between metres and cells."""
 
     @contextmanager
     def solver(problem: Problem) -> Iterator[Solver]:

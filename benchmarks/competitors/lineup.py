@@ -1,4 +1,4 @@
-"""All that can take part on this machine, and what keeps the others from it."""
+"""List the competitors that can run on this machine, and why others cannot."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ TEAMS: tuple[Callable[[], list[Competitor]], ...] = (
 
 
 def lineup() -> tuple[list[Competitor], list[str]]:
-    """Return the competitors, and a sentence for each team that is missing."""
+    """Return the competitors, and a sentence for each group that is missing."""
     taking_part, missing = [], []
     for team in TEAMS:
         try:

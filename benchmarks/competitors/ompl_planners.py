@@ -22,7 +22,7 @@ SIMPLIFY = '+simplify'
 
 
 def ompl_native() -> list[Competitor]:
-    """List the planners of the C++ library, or raise Missing."""
+    """Return the planners of the C++ library, or raise Missing."""
     session = _session(ompl.native)
     names = ('BKPIECE1', 'KPIECE1', 'RRT', 'EST', 'SBL')
     anytime = {'RRT*': 'RRTstar', 'Informed RRT*': 'InformedRRTstar', 'BIT*': 'BITstar'}
@@ -35,7 +35,7 @@ def ompl_native() -> list[Competitor]:
 
 
 def ompl_wheel() -> list[Competitor]:
-    """List some planners of the wheel from PyPI, or raise Missing."""
+    """Return some planners of the wheel from PyPI, or raise Missing."""
     session = _session(ompl.wheel)
     names = ('RRTConnect', 'BKPIECE1')
     return [

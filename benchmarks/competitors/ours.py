@@ -22,7 +22,7 @@ CALIBRATION, USED = 40, 0.9
 
 
 def ours() -> list[Competitor]:
-    """List ours."""
+    """Return our planners."""
     first = [
         Competitor(name, 'ours', 'first', _plan(algorithm=name, simplify=False), runs_least=least)
         for name, least in (('auto', 200), ('hit_and_run', 3), ('rrt', 3), ('rrt_connect', 3))

@@ -1,4 +1,4 @@
-"""OMPL's planners, in C++ and from PyPI, each behind a pipe."""
+"""Run OMPL's planners, in C++ and from PyPI, through pipes."""
 
 from benchmarks.ompl.driver import (
     MissingOmpl,

@@ -1,4 +1,4 @@
-"""Talk to OMPL's control planners; what is said is described in ``control_planners.cpp``."""
+"""Run OMPL's control planners; ``control_planners.cpp`` describes the protocol."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Start OMPL's programs and talk to them; what is said is described in ``planners.cpp``."""
+"""Run OMPL's programs; ``planners.cpp`` describes the protocol."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ class Answer(NamedTuple):
 
 
 def native(name: str = 'planners') -> list[str]:
-    """Return the command of a C++ program, compiled where need be, or raise MissingOmpl."""
+    """Return the command of a C++ program, compiled if necessary, or raise MissingOmpl."""
     program, source = BUILD / name, FOLDER / f'{name}.cpp'
     for tool in ('g++', 'pkg-config'):
         if shutil.which(tool) is None:
@@ -82,7 +82,7 @@ def wheel_version() -> str:
 
 
 class Session:
-    """A running program; grids are handed to it as they change."""
+    """A running program, which is sent each new grid."""
 
     def __init__(self, command: list[str]) -> None:
         self._folder = tempfile.TemporaryDirectory()
@@ -93,7 +93,7 @@ class Session:
         )
 
     def use(self, blocked: NDArray[np.bool_]) -> None:
-        """Let the next requests be on this grid (rows, columns), whose rim is blocked."""
+        """Set the grid (rows, columns) of the next requests; its rim is blocked."""
         if blocked is self._blocked:
             return
         write_grid(self._file, blocked)

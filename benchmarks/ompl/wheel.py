@@ -1,5 +1,5 @@
 """
-OMPL's wheel as a program, ``python -m benchmarks.ompl.wheel SEED``; it talks as ``planners.cpp``.
+Run OMPL's wheel: ``python -m benchmarks.ompl.wheel SEED``, with the protocol of ``planners.cpp``.
 
 Its bindings take motion validators written in Python only. This one hands four numbers to compiled
 code, which traverses the grid exactly; the way through Python costs more than the traversal.
@@ -28,14 +28,14 @@ SIMPLIFY = '+simplify'
 
 
 class GridTraversal(base.MotionValidator):
-    """The exact check of motions."""
+    """Exact check of motions."""
 
     def __init__(self, si: base.SpaceInformation, grid: GridData) -> None:
         super().__init__(si)
         self.free_distance, self.labels = grid
 
     def checkMotion(self, a: base.State, b: base.State) -> bool:
-        """Say whether the segment between two states is free."""
+        """Return whether the segment between two states is free."""
         return _is_motion_free(self.free_distance, self.labels, a[0], a[1], b[0], b[1])
 
 
@@ -93,7 +93,7 @@ class Course:
 
 
 def main(seed: int) -> None:
-    """Answer what is asked on the standard input."""
+    """Answer requests from standard input."""
     util.setLogLevel(util.LogLevel.LOG_NONE)
     util.RNG.setSeed(seed)
     for line in sys.stdin:

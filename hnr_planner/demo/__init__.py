@@ -1,6 +1,7 @@
 """
-The demo: real nodes in processes of their own, asked, listened to, checked and drawn.
+The demo: request paths from real nodes, check them and draw them.
 
-`run` tells the story; `scene` is what is asked, `processes` are the nodes, `client` asks and
-listens in one of them, `check` goes over the paths, `report` shows it all.
+``run`` is the sequence of steps; ``scene`` chooses the request, ``processes`` runs the nodes,
+``client`` sends the requests and receives the messages, ``check`` verifies the paths, ``report``
+prints and draws the result.
 """

@@ -1,4 +1,4 @@
-"""What the client received about one request, on its way to the demo through a file."""
+"""Messages that the client received for one request, passed to the demo through a file."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 @dataclass(frozen=True, eq=False)
 class Answer:
     """
-    All that arrived about one request.
+    Response and messages of one request.
 
     Parameters
     ----------
@@ -22,11 +22,11 @@ class Answer:
     values : dict
         The outcome's values, by name.
     response : (m, 2)
-        The path in the answer of the service [m].
+        The path in the response of the service [m].
     path, samples, parents : (m, 2), (k, 2), (k,)
-        What the topics brought: points [m], and the row of each sample's parent.
+        Contents of the topics: points [m], and the row of each sample's parent.
     round_trip : float
-        From the request to the answer of the service [s].
+        Time from the request to the response of the service [s].
 
     """
 
@@ -39,7 +39,7 @@ class Answer:
     round_trip: float
 
     def write(self, folder: Path, algorithm: str) -> None:
-        """Write it to a folder, under the name of the algorithm that was asked for."""
+        """Write the answer into a folder, under the name of its algorithm."""
         words = {'outcome': self.outcome, 'values': self.values, 'round_trip': self.round_trip}
         np.savez(
             folder / f'{algorithm}.npz',
@@ -52,7 +52,7 @@ class Answer:
 
     @classmethod
     def read(cls, folder: Path, algorithm: str) -> Answer:
-        """Read what `write` wrote."""
+        """Read an answer that ``write`` wrote."""
         with np.load(folder / f'{algorithm}.npz') as file:
             arrays = {name: file[name] for name in ('response', 'path', 'samples', 'parents')}
             return cls(**json.loads(str(file['words'])), **arrays)

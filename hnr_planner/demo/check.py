@@ -1,8 +1,8 @@
 """
-The demo's own check of a path: every segment against the cells of the raw map file.
+Check a path for the demo: every segment against the cells of the raw map file.
 
-It is slow and plain on purpose, and shares nothing with the planner, so that an error there
-cannot hide here.
+The check is slow and simple on purpose, and shares no code with the planner, so that an error
+there cannot hide here.
 """
 
 from __future__ import annotations
@@ -15,8 +15,8 @@ from hnr_planner.maps import OccupancyMap
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+#: How deep a path may lie in an obstacle, because of rounding [cells].
 TOLERANCE = 1e-7
-"""How deep, in cells, a path may lie in an obstacle by rounding."""
 
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
@@ -25,16 +25,16 @@ Bools = NDArray[np.bool_]
 @dataclass(frozen=True)
 class Check:
     """
-    What a path is like.
+    Result of the check of a path.
 
     Parameters
     ----------
     problems : tuple of str
-        What is wrong with it, in words; empty for a path that is free.
+        Descriptions of the faults; empty for a path that is free.
     length, clearance : float
         Its length, and its least distance to an occupied square [m]; inf where there is none.
     segments : int
-        How many segments were gone over.
+        Number of segments checked.
 
     """
 
@@ -54,10 +54,10 @@ def check_path(
     occupied_threshold: int = 65,
 ) -> Check:
     """
-    Check a path (m, 2) [m] against a map: ends, collisions, and the distance kept.
+    Check a path (m, 2) [m] against a map: its ends, collisions, and its clearance.
 
-    Unknown cells and the outside of the map are obstacles, but only occupied cells ask for a
-    distance: inflation by cell centres keeps the radius up to one diagonal of a cell.
+    Unknown cells and the outside of the map are obstacles, but clearance is required from occupied
+    cells only: inflation by cell centres keeps the radius up to one diagonal of a cell.
     """
     if len(path) == 0:
         return Check(('there is no path',), math.inf, math.inf, 0)
@@ -85,7 +85,7 @@ def check_path(
 
 
 def _in_cells(path: Floats, occupancy: OccupancyMap) -> Floats:
-    """Return the points as (column, row) of the grid: away from its origin, turned back by yaw."""
+    """Return the points as (column, row) of the grid, relative to its origin and yaw."""
     x, y, yaw = occupancy.origin
     away = np.asarray(path, dtype=float) - (x, y)
     cos, sin = math.cos(yaw), math.sin(yaw)
@@ -96,7 +96,7 @@ def _in_cells(path: Floats, occupancy: OccupancyMap) -> Floats:
 
 
 def _collision(a: Floats, b: Floats, blocked: Bools) -> str:
-    """Return what a segment runs into, in words, or an empty string."""
+    """Return a description of the collision of a segment, or an empty string."""
     if not np.isfinite([a, b]).all():
         return 'is not finite'
     rows, cols = blocked.shape
@@ -144,7 +144,7 @@ def _window(
 
 
 def _full(cells: Bools, height: int, width: int) -> Bools:
-    """Return where rectangles of the given size lie wholly in the cells."""
+    """Return whether the rectangle of a given size at each cell is full."""
     rows, cols = cells.shape
     up, right = max(rows - height + 1, 0), max(cols - width + 1, 0)
     full = np.ones((up, right), dtype=bool)
@@ -173,7 +173,7 @@ def _distances(a: Floats, b: Floats, lows: ArrayLike, highs: ArrayLike) -> Float
 
 
 def _meets(a: Floats, b: Floats, low: Floats, high: Floats) -> Bools:
-    """Return which boxes a segment meets: no axis and no normal of the segment parts them."""
+    """Return whether a segment intersects each box, by separating axes."""
     beside = (np.maximum(a, b) < low).any(axis=1) | (np.minimum(a, b) > high).any(axis=1)
     normal = np.array((a[1] - b[1], b[0] - a[0]))
     offset = np.abs(((low + high) / 2 - a) @ normal)

@@ -1,8 +1,8 @@
 """
-A process that asks the planning node for paths and receives what it publishes.
+Request paths from a running planning node and receive what it publishes.
 
-``python -m hnr_planner.demo.client --start X Y --goal X Y`` asks a node that runs, by each
-algorithm, and says how it went; with ``--out DIR`` it also writes down what it received.
+``python -m hnr_planner.demo.client --start X Y --goal X Y`` requests a path by each algorithm and
+prints the results; with ``--out DIR`` it also writes what it received into files.
 """
 
 from __future__ import annotations
@@ -29,17 +29,18 @@ from rclpy.node import Node
 from sensor_msgs.msg import PointCloud2
 
 PLANNER = 'hnr_planner'
+#: Time for a published message to arrive, or a service to be discovered [s].
 ARRIVE_WITHIN = 10.0
-"""Time for a message that has been published, or a service that is up, to be seen [s]."""
-POINT_FIELDS = {5: '<i4', 6: '<u4', 7: '<f4', 8: '<f8'}  # of sensor_msgs/PointField
+#: NumPy types of sensor_msgs/PointField.
+POINT_FIELDS = {5: '<i4', 6: '<u4', 7: '<f4', 8: '<f8'}
 
 
 class LateError(Exception):
-    """Something did not come in time; the message says what."""
+    """Something did not arrive in time; the message names it."""
 
 
 class Client(Node):
-    """Asks for paths, and keeps what is published by the stamp of each request."""
+    """Node that requests paths and keeps the messages published for each, by their stamps."""
 
     def __init__(self) -> None:
         super().__init__('hnr_planner_client')
@@ -51,7 +52,7 @@ class Client(Node):
         self.create_subscription(DiagnosticArray, '/diagnostics', self._note_health, 10)
 
     def _listen(self, topic: str, kind: type) -> None:
-        """Keep the messages of a topic of the planner by their stamps."""
+        """Subscribe to a topic of the planner and keep its messages by their stamps."""
         received = self._received[topic] = {}
 
         def keep(message: Any) -> None:
@@ -60,7 +61,7 @@ class Client(Node):
         self.create_subscription(kind, f'{PLANNER}/{topic}', keep, latched(100))
 
     def wait_until_ready(self, within: float) -> None:
-        """Wait until the planner says that it has a map and can plan, or raise LateError."""
+        """Wait until the planner reports that it has a map and can plan, or raise LateError."""
         self._wait(lambda: self._ready, within, 'a planner that is up and has a map')
 
     def ask(
@@ -72,23 +73,23 @@ class Client(Node):
         within: float,
     ) -> Answer:
         """
-        Ask for a path by an algorithm and return all that came of it.
+        Request a path by an algorithm, and return response and messages.
 
         Parameters
         ----------
         algorithm : str
-            A name of ALGORITHMS.
+            A name of ``ALGORITHMS``.
         start, goal : (x, y)
             Ends of the path [m].
         frame : str
             The frame they are in.
         within : float
-            How long to wait for the answer [s].
+            Time limit for the response [s].
 
         Raises
         ------
         LateError
-            When the answer or a message about it does not come in time.
+            When the response or a message of the request does not arrive in time.
 
         """
         name = f'{PLANNER}/plan_{algorithm}'
@@ -125,19 +126,21 @@ class Client(Node):
             rclpy.spin_once(self, timeout_sec=0.1)
 
     def _note_health(self, message: DiagnosticArray) -> None:
-        """Note when the planner is ready."""
+        """Record that the planner is ready."""
         for status in message.status:
             if status.name.startswith(f'/{PLANNER}:') and status.level == DiagnosticStatus.OK:
                 self._ready = True
 
 
 def main(argv: list[str] | None = None) -> int:
-    """Ask for a path by each algorithm; return 0 when all were answered."""
+    """Request a path by each algorithm; return the exit code, 0 when all were answered."""
     parser = argparse.ArgumentParser(prog='python -m hnr_planner.demo.client', description=__doc__)
     for name in ('start', 'goal'):
         parser.add_argument(f'--{name}', type=float, nargs=2, required=True, metavar=('X', 'Y'))
     parser.add_argument('--frame', default='map', help='frame of both; default map')
-    parser.add_argument('--out', type=Path, metavar='DIR', help='write what arrives there')
+    parser.add_argument(
+        '--out', type=Path, metavar='DIR', help='write the received messages there'
+    )
     parser.add_argument('--ready-within', type=float, default=10.0, metavar='S')
     parser.add_argument('--answer-within', type=float, default=30.0, metavar='S')
     arguments = parser.parse_args(argv)
@@ -167,14 +170,14 @@ def main(argv: list[str] | None = None) -> int:
     except Exception:
         if rclpy.ok():
             raise
-        return 130  # a signal came, and whatever rclpy was about to do failed in its own way
+        return 130  # a signal came, and the call of rclpy that it interrupted failed
     finally:
         rclpy.try_shutdown()
     return 0
 
 
 def _pose(point: tuple[float, float], frame: str) -> PoseStamped:
-    """Return a pose at a point; fields of messages take floats of Python only."""
+    """Return a pose at a point; fields of messages take Python floats only."""
     pose = PoseStamped()
     pose.header.frame_id = frame
     pose.pose.position.x, pose.pose.position.y = (float(value) for value in point)

@@ -1,8 +1,8 @@
 """
-The demo's processes: started with their output shown line by line, and never left behind.
+Run the demo's processes, print their output line by line, and leave none behind.
 
 Each runs in a session of its own, so that Ctrl-C in a terminal reaches the demo alone, which then
-ends the others in order: SIGTERM first, SIGKILL for those that do not listen.
+ends the others: SIGTERM first, SIGKILL for those that do not react.
 """
 
 from __future__ import annotations
@@ -23,17 +23,18 @@ from types import FrameType
 import hnr_planner
 from hnr_planner.core import HnrError
 
+#: Time for a process to end after SIGTERM [s].
 END_WITHIN = 5.0
-"""Time that a process has to end after SIGTERM [s]."""
+#: Signals that interrupt the demo.
 SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
 
 class ProcessError(HnrError):
-    """A process died, or did not do its work in time."""
+    """A process died, or did not finish in time."""
 
 
 class Screen:
-    """Prints lines with the time since the beginning, one at a time, whoever says them."""
+    """Printer of whole lines from several threads, each with the time since the beginning."""
 
     def __init__(self) -> None:
         self._began = time.monotonic()
@@ -53,7 +54,7 @@ class Screen:
 
 
 class Interruptions:
-    """Turns Ctrl-C, SIGTERM and SIGHUP into KeyboardInterrupt, but not where they are held."""
+    """Handler that turns signals into KeyboardInterrupt, delayed while they are held."""
 
     def __init__(self) -> None:
         self._held = False
@@ -61,7 +62,7 @@ class Interruptions:
 
     @contextmanager
     def caught(self) -> Iterator[None]:
-        """Handle the signals here, and as before afterwards."""
+        """Handle the signals inside the block, and restore the handlers after it."""
         before = {number: signal.signal(number, self._handle) for number in SIGNALS}
         try:
             yield
@@ -90,14 +91,14 @@ class Interruptions:
 
 class Processes:
     """
-    Python modules at work in processes of their own, all in one ROS domain.
+    Python modules that run in processes of their own, all in one ROS domain.
 
     Parameters
     ----------
     screen : Screen
-        Where their output goes, under the name of each.
+        Prints their output, with the name of each.
     interruptions : Interruptions
-        Held while a process is started or ended, so that none slips away.
+        Held while a process is started or ended, so that none is lost.
     domain : int
         ROS_DOMAIN_ID of all of them.
     logs : Path
@@ -115,7 +116,7 @@ class Processes:
         self._readers: list[threading.Thread] = []
 
     def start(self, name: str, module: str, arguments: Sequence[str]) -> None:
-        """Start a module of Python under a name."""
+        """Start a Python module under a name."""
         with self._interruptions.held():
             process = subprocess.Popen(
                 [sys.executable, '-m', module, *arguments],
@@ -134,12 +135,12 @@ class Processes:
 
     def wait_for(self, name: str, within: float, waiting: str) -> None:
         """
-        Wait until a process has ended well, and say now and then what for.
+        Wait until a process has ended with code 0, and print what for when nothing else is.
 
         Raises
         ------
         ProcessError
-            When it ends with another code than 0 or not in time, or another process dies.
+            When it ends with another code or not in time, or another process dies.
 
         """
         deadline = time.monotonic() + within
@@ -155,14 +156,14 @@ class Processes:
             raise ProcessError(f'the {name} ended with exit code {code}; see its lines above')
 
     def check_alive(self, *, waiting_for: str = '') -> None:
-        """Raise ProcessError when a process has ended that nobody waits for."""
+        """Raise ProcessError when a process has ended other than the one waited for."""
         for name, process in self._running.items():
             code = process.poll()
             if code is not None and name != waiting_for:
                 raise ProcessError(f'the {name} died with exit code {code}; see its lines above')
 
     def stop(self) -> list[str]:
-        """End all that still run; return what did not go as it should, in words."""
+        """End all processes that still run; return descriptions of what went wrong."""
         with self._interruptions.held():
             complaints = []
             for process in self._running.values():
@@ -192,7 +193,7 @@ class Processes:
 
 
 def free_domain() -> int:
-    """Return a ROS domain that nobody on this machine uses: its discovery port is free."""
+    """Return a ROS domain that is not in use on this machine: its discovery port is free."""
     domains = list(range(1, 102))  # those whose ports are safe on every system
     random.shuffle(domains)
     for domain in domains:
@@ -206,7 +207,7 @@ def free_domain() -> int:
 
 
 def _environment(domain: int, logs: Path) -> dict[str, str]:
-    """Return the environment of the processes: this package, this machine only, plain lines."""
+    """Return the environment of the processes: this package, this machine only, plain logs."""
     environment = {
         name: value
         for name, value in os.environ.items()
@@ -226,7 +227,7 @@ def _environment(domain: int, logs: Path) -> dict[str, str]:
 
 
 def _send(process: subprocess.Popen[str], number: signal.Signals) -> None:
-    """Send a signal to the session of a process, if any of it is left."""
+    """Send a signal to the session of a process, if it still exists."""
     try:
         os.killpg(process.pid, number)
     except ProcessLookupError:

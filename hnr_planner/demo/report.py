@@ -1,4 +1,4 @@
-"""What the demo shows of the answers: a table and a picture."""
+"""Show the answers in a table and a picture."""
 
 from __future__ import annotations
 
@@ -10,11 +10,12 @@ from hnr_planner.demo.answer import Answer
 from hnr_planner.demo.check import Check
 from hnr_planner.demo.scene import ALGORITHMS, Scene
 
+#: Headings of the table.
 HEADINGS = ('algorithm', 'status', 'transitions', 'time', 'length', 'min. clearance', 'path check')
 
 
 def table(answers: dict[str, Answer], checks: dict[str, Check]) -> str:
-    """Return the answers and what their checks found, a line for each algorithm."""
+    """Return a table of the answers and their checks, one line for each algorithm."""
     rows = [HEADINGS]
     for algorithm, answer in answers.items():
         check = checks[algorithm]
@@ -35,7 +36,7 @@ def table(answers: dict[str, Answer], checks: dict[str, Check]) -> str:
 
 
 def aligned(rows: Sequence[Sequence[str]]) -> str:
-    """Return rows of words as columns: the first two to the left, numbers to the right."""
+    """Return rows of text as aligned columns: the first two and the last to the left."""
     widths = [max(len(row[col]) for row in rows) for col in range(len(rows[0]))]
     lines = []
     for row in rows:
@@ -66,12 +67,12 @@ def draw(scene: Scene, answers: dict[str, Answer], file: Path) -> None:
 
 
 def transitions(answer: Answer) -> int:
-    """Return how many proposals the search handled."""
+    """Return the number of transitions of the search."""
     return int(answer.values.get('iterations', '0'))
 
 
 def planning_time(answer: Answer) -> float:
-    """Return how long the planner took, as the node says [s]."""
+    """Return the planning time that the node reports [s]."""
     return float(answer.values.get('planning_time', 'nan'))
 
 

@@ -1,4 +1,4 @@
-"""The story of the demo, from the map to the picture."""
+"""Run the demo, from the map to the picture."""
 
 from __future__ import annotations
 
@@ -17,11 +17,13 @@ from hnr_planner.demo.report import draw, table
 from hnr_planner.demo.scene import ALGORITHMS, choose_scene, Scene
 import numpy as np
 
+#: Time limit of the planner for each request [s].
 TIME_LIMIT = 10.0
-"""Of the planner, for each request [s]."""
+#: Seed of the searches.
 SEED = 2016
+#: Time for the nodes to start [s].
 READY_WITHIN = 180.0
-"""Time for the nodes to start; they may have to compile [s]."""
+#: Exit codes.
 DONE, FAILED, INTERRUPTED = 0, 1, 130
 
 
@@ -41,12 +43,12 @@ def run_demo(map_file: Path, out: Path, *, keep: bool = False) -> int:
     Returns
     -------
     int
-        0 when all went well, 1 when something failed (a line says what), 130 when interrupted.
+        0 for success, 1 when something failed (a line says what), 130 when interrupted.
 
     Raises
     ------
     MapFileError, SceneError
-        When there is nothing to show on the map.
+        When the map cannot be read, or has no free space.
 
     """
     screen, interruptions = Screen(), Interruptions()
@@ -71,7 +73,7 @@ def run_demo(map_file: Path, out: Path, *, keep: bool = False) -> int:
 
 
 def _introduce(scene: Scene, screen: Screen) -> None:
-    """Say what will be asked."""
+    """Print map, robot, start and goal."""
     rows, cols = scene.occupancy.data.shape
     resolution = scene.occupancy.resolution
     screen.say(
@@ -86,7 +88,7 @@ def _introduce(scene: Scene, screen: Screen) -> None:
 def _nodes(
     scene: Scene, screen: Screen, interruptions: Interruptions
 ) -> Iterator[tuple[Processes, int, Path]]:
-    """Run the map source and the planner; the domain they are in, and a folder for messages."""
+    """Run the map source and the planner; yield them, their domain and a folder for messages."""
     domain = free_domain()
     with TemporaryDirectory(prefix='hnr_planner_demo_') as name:
         folder = Path(name)
@@ -105,7 +107,7 @@ def _nodes(
 
 
 def _map_arguments(scene: Scene) -> list[str]:
-    """Return the ROS arguments of the map source; quoted, any file name is a string."""
+    """Return the ROS arguments of the map source; quotes make any file name a string."""
     file = json.dumps(str(scene.file), ensure_ascii=False)
     return ['--ros-args', '-p', f'yaml_filename:={file}']
 
@@ -122,7 +124,7 @@ def _planner_arguments(scene: Scene) -> list[str]:
 
 
 def _ask(scene: Scene, processes: Processes, folder: Path) -> dict[str, Answer]:
-    """Have the client ask for both plans, and return what it received."""
+    """Let the client request both paths, and return what it received."""
     ends = [word for name in ('start', 'goal') for word in _point_argument(scene, name)]
     limits = ['--ready-within', str(READY_WITHIN), '--answer-within', str(2 * TIME_LIMIT)]
     processes.start('client', 'hnr_planner.demo.client', [*ends, '--out', str(folder), *limits])
@@ -133,12 +135,12 @@ def _ask(scene: Scene, processes: Processes, folder: Path) -> dict[str, Answer]:
 
 
 def _point_argument(scene: Scene, name: str) -> list[str]:
-    """Return the arguments that give the client the start or the goal, to the last digit."""
+    """Return the arguments for the start or the goal, with all digits."""
     return [f'--{name}', *(repr(value) for value in getattr(scene, name))]
 
 
 def _show(scene: Scene, answers: dict[str, Answer], out: Path) -> bool:
-    """Check the answers, print the table, write the picture; return whether all is well."""
+    """Check the answers, print the table, write the picture; return whether no check failed."""
     checks = {}
     for algorithm, answer in answers.items():
         checks[algorithm] = check_path(
@@ -162,7 +164,7 @@ def _show(scene: Scene, answers: dict[str, Answer], out: Path) -> bool:
 
 
 def _problems(answer: Answer, check: Check) -> list[str]:
-    """Return what is wrong with an answer, in words."""
+    """Return descriptions of the faults of an answer."""
     if answer.outcome != 'SOLVED':
         return [f'{answer.outcome}: {answer.values.get("why", "no reason was given")}']
     problems = list(check.problems)
@@ -174,7 +176,7 @@ def _problems(answer: Answer, check: Check) -> list[str]:
 
 
 def _print_calls(scene: Scene, domain: int) -> None:
-    """Print what to try while the nodes are up."""
+    """Print example calls for the running nodes."""
     start, goal = (
         f'{{header: {{frame_id: map}}, pose: {{position: {{x: {x:.2f}, y: {y:.2f}}}}}}}'
         for x, y in (scene.start, scene.goal)
@@ -206,7 +208,7 @@ Without the ros2 command, the demo's own client asks:
 
 
 def _wait_for_interruption(processes: Processes) -> None:
-    """Wait for Ctrl-C, which is the way to end; raise ProcessError when a node dies."""
+    """Wait for Ctrl-C, which ends the demo; raise ProcessError when a node dies."""
     try:
         while True:
             processes.check_alive()

@@ -1,4 +1,4 @@
-"""What the demo asks for: a map, the size of the robot, a start and a goal."""
+"""Choose the request of the demo: map, radius of the robot, start and goal."""
 
 from __future__ import annotations
 
@@ -11,25 +11,27 @@ from hnr_planner.maps import load_map, OccupancyMap
 import numpy as np
 from numpy.typing import NDArray
 
+#: Algorithms of the requests, and their names in the picture.
 ALGORITHMS = {'hit_and_run': 'Hit-and-Run', 'rrt': 'RRT'}
-"""Algorithms that are asked, and what a person calls them."""
+#: The map of the package.
 OFFICE = Path('config', 'maps', 'office.yaml')
+#: Radius of the robot [m].
 ROBOT_RADIUS = 0.22
+#: A robot fits a map when it can reach this fraction of the cells that a point could reach.
 LARGE_ENOUGH = 0.5
-"""A robot fits a map when it keeps this share of what a point could reach."""
+#: Distance of start and goal from blocked cells, where the map is wide enough [cells].
 ROOM_AROUND = 10
-"""Cells that start and goal keep to the robot's limits, if the map is wide enough for it."""
 
 Point = tuple[float, float]
 
 
 class SceneError(HnrError, ValueError):
-    """There is nothing to show on this map; the message names it, and why."""
+    """A map on which nothing can be planned; the message names it and the reason."""
 
 
 @dataclass(frozen=True)
 class Scene:
-    """A request to show; `space` is the map as the robot sees it, points are in metres."""
+    """A request on a map; ``space`` is the free space of the robot, points are in metres."""
 
     file: Path
     occupancy: OccupancyMap
@@ -47,8 +49,8 @@ def choose_scene(file: Path) -> Scene:
     """
     Return the scene on a map file.
 
-    Start and goal are far apart in the largest part of the map that the robot can drive. Its
-    radius is 0.22 m where that leaves enough of the map, and the cells are no larger; else 0.
+    Start and goal are far apart in the largest component of the free space. The robot's radius is
+    0.22 m where that leaves enough of the map, and the cells are no larger; else 0.
 
     Raises
     ------
@@ -67,7 +69,7 @@ def choose_scene(file: Path) -> Scene:
 
 
 def office_file() -> Path:
-    """Return the office that comes with us: in the source folder, or where it is installed."""
+    """Return the map file of the package, in the source folder or where it is installed."""
     package = Path(__file__).resolve().parents[1]
     installed = Path('share', 'hnr_planner', OFFICE)
     prefixes = [Path(p) for p in os.environ.get('AMENT_PREFIX_PATH', '').split(os.pathsep) if p]
@@ -81,10 +83,10 @@ def office_file() -> Path:
 
 def farthest_cells(free: NDArray[np.bool_]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """
-    Return two cells [row, column] that are far apart on the way through connected free cells.
+    Return two cells [row, column] whose shortest path through connected free cells is long.
 
-    From any cell to the one farthest from it, and from there to the farthest again. Cells well
-    inside are taken where there are some: a robot seldom starts with its nose in a corner.
+    The first is the farthest from an arbitrary cell, the second the farthest from the first. Cells
+    away from blocked ones are preferred, since a robot seldom starts in a corner.
     """
     inside = free
     for _ in range(ROOM_AROUND):
@@ -98,21 +100,21 @@ def farthest_cells(free: NDArray[np.bool_]) -> tuple[NDArray[np.int64], NDArray[
 
 
 def _space_that_fits(occupancy: OccupancyMap) -> GridSpace:
-    """Return the space of a robot of the usual size, or of a point where that one is stuck."""
+    """Return the space of a robot of the usual radius, or of a point where that does not fit."""
     point, robot = (
         GridSpace.from_occupancy(
             occupancy.data, occupancy.resolution, occupancy.origin, robot_radius=radius
         )
         for radius in (0.0, ROBOT_RADIUS)
     )
-    # Cells larger than the robot cannot tell what it fits through: a point is all they can plan.
+    # Cells larger than the robot cannot resolve what it fits through.
     is_fine = occupancy.resolution <= ROBOT_RADIUS
     fits = robot.largest_component().sum() >= LARGE_ENOUGH * point.largest_component().sum()
     return robot if is_fine and fits else point
 
 
 def _without_rim(cells: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Return the cells whose eight neighbours belong to the set too."""
+    """Return the cells whose eight neighbours belong to the set as well."""
     padded = np.pad(cells, 1)
     rows, cols = cells.shape
     inside = cells.copy()
@@ -125,7 +127,7 @@ def _without_rim(cells: NDArray[np.bool_]) -> NDArray[np.bool_]:
 def _farthest(
     free: NDArray[np.bool_], source: NDArray[np.int64], wanted: NDArray[np.bool_]
 ) -> NDArray[np.int64]:
-    """Return the wanted cell that a wave from the source through free cells reaches last."""
+    """Return the wanted cell that a wavefront from the source through free cells reaches last."""
     padded = np.pad(free, 1)
     width = padded.shape[1]
     unseen, wanted_flat = padded.ravel(), np.pad(wanted, 1).ravel()

@@ -1,8 +1,8 @@
 """
-Pictures of maps, samples and paths.
+Draw maps, samples and paths.
 
-Every ``draw_*`` function puts one thing on a matplotlib axes whose unit is the metre of the map
-frame; ``figure_of_plans`` and ``figure_of_samples`` put them together. Figures are made without
+Every ``draw_*`` function draws one thing on matplotlib axes in metres of the map frame;
+``figure_of_plans`` and ``figure_of_samples`` make whole figures. Figures are made without
 pyplot, so nothing global is touched and no display is needed.
 """
 

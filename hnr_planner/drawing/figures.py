@@ -1,4 +1,4 @@
-"""Whole pictures: plans side by side over a map, and the samples of a walk."""
+"""Make whole figures: plans side by side over a map, and the samples of a walk."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
 
 class Plan(NamedTuple):
-    """What a picture shows of one search; points are (x, y) in metres."""
+    """Path and samples of one search, for a picture; points are (x, y) in metres."""
 
     title: str
     path: NDArray[np.float64]
@@ -59,9 +59,9 @@ def figure_of_plans(
     occupancy : OccupancyMap
         The map of all panels.
     plans : sequence of Plan
-        At least one; an empty path draws none.
+        At least one; an empty path is not drawn.
     blocked
-        As for `draw_map`.
+        (rows, cols) bool, optional: cells that the planner may not enter.
 
     """
     figure, panels = _panels(occupancy, len(plans))
@@ -109,7 +109,7 @@ def save(figure: Figure, file: str | Path) -> None:
 
 
 def _panels(occupancy: OccupancyMap, count: int) -> tuple[Figure, list[Axes]]:
-    """Return a figure of `count` panels, side by side, whose shape suits the map."""
+    """Return a figure of ``count`` panels, side by side, whose shape suits the map."""
     width, height = np.ptp(known_box(occupancy), axis=0)
     panel_width = 6.4 if count == 1 else 6.0
     panel_height = float(np.clip(panel_width * height / width, 2.2, 9.0))

@@ -37,7 +37,7 @@ def draw_map(
     Parameters
     ----------
     axes : matplotlib.axes.Axes
-        Where to draw.
+        The axes to draw on.
     occupancy : OccupancyMap
         The map.
     blocked : (rows, cols) bool, optional
@@ -128,7 +128,7 @@ def _to_map_frame(occupancy: OccupancyMap) -> Affine2D:
 
 
 def _style(axes: Axes) -> None:
-    """Label the axes in metres, with little ink."""
+    """Label the axes in metres, in faint colours."""
     axes.set_xlabel('x [m]', color=FAINT_INK, fontsize=9)
     axes.set_ylabel('y [m]', color=FAINT_INK, fontsize=9)
     axes.tick_params(colors=FAINT_INK, labelsize=8, length=3)

@@ -1,4 +1,4 @@
-"""What a search leaves behind: samples, the tree of them, a path between two ends."""
+"""Draw the samples of a search, their tree, and a path between two ends."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def draw_tree(axes: Axes, samples: ArrayLike, parents: ArrayLike) -> None:
     Parameters
     ----------
     axes : matplotlib.axes.Axes
-        Where to draw.
+        The axes to draw on.
     samples : (k, 2) array_like
         Points [m].
     parents : (k,) array_like of int
@@ -53,7 +53,7 @@ def draw_samples(axes: Axes, samples: ArrayLike) -> None:
     Parameters
     ----------
     axes : matplotlib.axes.Axes
-        Where to draw.
+        The axes to draw on.
     samples : (k, 2) array_like
         Points [m], in the order in which they were drawn.
 
@@ -76,12 +76,12 @@ def draw_samples(axes: Axes, samples: ArrayLike) -> None:
 
 def draw_sample_cells(axes: Axes, samples: ArrayLike, side: float) -> None:
     """
-    Draw samples as the squares that they lie in: sharp at any size, and a tenth of the bytes.
+    Draw samples as the squares that contain them: sharp at any size, and a tenth of the bytes.
 
     Parameters
     ----------
     axes : matplotlib.axes.Axes
-        Where to draw.
+        The axes to draw on.
     samples : (k, 2) array_like
         At least one point [m], in the order in which they were drawn; a square has the colour of
         its last one.
@@ -107,7 +107,7 @@ def draw_sample_cells(axes: Axes, samples: ArrayLike, side: float) -> None:
 
 
 def draw_path(axes: Axes, path: ArrayLike, *, colour: str = PATH) -> None:
-    """Draw the path, an (m, 2) array of points [m], bold and set off from what lies below."""
+    """Draw the path, an (m, 2) array of points [m], as a bold line with a white outline."""
     points = np.asarray(path, dtype=float).reshape(-1, 2)
     axes.plot(
         points[:, 0],
@@ -140,5 +140,5 @@ def draw_ends(axes: Axes, start: ArrayLike, goal: ArrayLike) -> None:
 
 
 def _ages(count: int) -> NDArray[np.float64]:
-    """Return the place of each of `count` samples in their order, from 0 to 1."""
+    """Return the rank of each of ``count`` samples in their order, from 0 to 1."""
     return np.linspace(0.0, 1.0, count) if count > 1 else np.ones(count)

@@ -2,7 +2,7 @@
 Draw the sample maps of ``config/maps``.
 
 ``python -m hnr_planner.maps`` in the project's folder writes ``config/maps/office.yaml`` and
-``office.png``, always the same ones; another folder can be given as the only argument.
+``office.png``, the same in every run; the only argument may name another folder.
 """
 
 from pathlib import Path
@@ -11,6 +11,7 @@ import sys
 from hnr_planner.maps.building import building
 from hnr_planner.maps.map_server import save_map
 
+#: Seed of the office map.
 OFFICE_SEED = 5
 
 

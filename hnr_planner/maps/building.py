@@ -1,4 +1,4 @@
-"""A map like that of a real building: a generated office floor, surveyed by a simulated laser."""
+"""Generate a map like that of a real building: an office floor, surveyed by a simulated laser."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ def building(seed: int, *, resolution: float = 0.05, margin: float = 1.5) -> Occ
 
     Corridors, offices, meeting rooms, storage rooms and a hall with columns, furnished, with
     doors of 0.9 m to 1.2 m; a robot of radius 0.22 m gets into every room. Walls are ragged,
-    what no ray came to is unknown.
+    cells that no ray reached are unknown.
 
     Parameters
     ----------

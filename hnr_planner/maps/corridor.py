@@ -1,4 +1,4 @@
-"""A corridor that is there to be planned through."""
+"""Corridors, each with a request from one end to the other."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 class Corridor(NamedTuple):
     """
-    A corridor and a request from its one end to its other.
+    A corridor and a request from one end to the other.
 
     ``blocked`` is (rows, cols) bool with row 0 at the bottom, its cells of the side
     ``resolution`` [m]. ``start`` and ``goal`` (x, y) [m] lie in the middle of the corridor, half

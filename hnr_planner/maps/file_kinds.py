@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-#: How many bytes of a file `kind_of` needs.
+#: Number of bytes of a file that ``kind_of`` needs.
 HEAD = 512
 
 _KINDS = {

@@ -1,5 +1,5 @@
 """
-The true geometry of an office floor: rooms, corridors, doors and windows carved from a solid.
+Generate the geometry of an office floor: rooms, corridors, doors and windows.
 
 Two long corridors and a cross corridor run around a core of inner rooms and end in a hall;
 rooms of different sizes line them. Lengths are in metres, (0, 0) is the building's corner.
@@ -31,11 +31,11 @@ class Rect(NamedTuple):
     top: float
 
     def grown(self, by: float) -> Rect:
-        """Return it larger by the same length on every side."""
+        """Return the rectangle enlarged by the same length on every side."""
         return Rect(self.left - by, self.bottom - by, self.right + by, self.top + by)
 
     def meets(self, other: Rect) -> bool:
-        """Tell whether the two have a point in common."""
+        """Return whether the two have a point in common."""
         return (
             self.left <= other.right
             and other.left <= self.right
@@ -45,14 +45,14 @@ class Rect(NamedTuple):
 
 
 class Room(NamedTuple):
-    """The inside of a room, and what it is for: office, meeting, storage, hall or corridor."""
+    """The inside of a room, and its use: office, meeting, storage, hall or corridor."""
 
     kind: str
     rect: Rect
 
 
 class FloorPlan(NamedTuple):
-    """The rooms, what doors need free, and the material (rows, cols) of every small cell."""
+    """The rooms, the areas that doors need free, and the material (rows, cols) of every cell."""
 
     rooms: tuple[Room, ...]
     aprons: tuple[Rect, ...]
@@ -60,7 +60,7 @@ class FloorPlan(NamedTuple):
 
 
 def draw_floor_plan(rng: np.random.Generator) -> FloorPlan:
-    """Draw a floor of which every room can be entered, without furniture."""
+    """Generate a floor whose rooms can all be entered, without furniture."""
     corridors, rooms = _layout(rng)
     material = np.full((round(HEIGHT / CELL), round(WIDTH / CELL)), SOLID, np.uint8)
     for room in corridors + rooms:
@@ -78,13 +78,13 @@ def draw_floor_plan(rng: np.random.Generator) -> FloorPlan:
 
 
 def fill(material: NDArray[np.uint8], rect: Rect, value: int) -> None:
-    """Give the cells of a rectangle a material."""
+    """Set the material of the cells of a rectangle."""
     left, bottom, right, top = (max(0, round(edge / CELL)) for edge in rect)
     material[bottom:top, left:right] = value
 
 
 def fill_disc(material: NDArray[np.uint8], x: float, y: float, radius: float, value: int) -> None:
-    """Give the cells of a disc a material."""
+    """Set the material of the cells of a disc."""
     around = Rect(x, y, x, y).grown(radius + CELL)
     left, bottom, right, top = (max(0, round(edge / CELL)) for edge in around)
     window = material[bottom:top, left:right]
@@ -165,7 +165,7 @@ def _doorways(rng: np.random.Generator, corridors: list[Room], rooms: list[Room]
 
 
 def _doorway(rng: np.random.Generator, room: Rect, other: Rect) -> Rect | None:
-    """Return an opening in the wall that two rooms share, None where they share too little."""
+    """Return an opening in the wall that two rooms share, or None where it is too short."""
     width = rng.uniform(*DOOR_WIDTHS)
     margin = 0.25
     left, right = max(room.left, other.left), min(room.right, other.right)
@@ -181,7 +181,7 @@ def _doorway(rng: np.random.Generator, room: Rect, other: Rect) -> Rect | None:
 
 
 def _apron(doorway: Rect) -> Rect:
-    """Return what furniture leaves free: the door's width, on both sides of the wall."""
+    """Return the area that furniture leaves free: the door's width, on both sides of the wall."""
     left, bottom, right, top = doorway
     if right - left > top - bottom:
         return Rect(left - 0.1, bottom - APRON, right + 0.1, top + APRON)
@@ -189,7 +189,7 @@ def _apron(doorway: Rect) -> Rect:
 
 
 def _leaf(rng: np.random.Generator, doorway: Rect, corridors: list[Room]) -> Rect:
-    """Return a door's leaf that stands open at a right angle, never into a corridor."""
+    """Return the leaf of a door that is open at a right angle, never into a corridor."""
     left, bottom, right, top = doorway
     thick = 0.05
     if right - left > top - bottom:

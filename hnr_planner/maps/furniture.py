@@ -1,5 +1,5 @@
 """
-Furniture for a floor plan: desks, chairs, shelves, tables, columns and what lies about.
+Furnish a floor plan: desks, chairs, shelves, tables, columns and clutter.
 
 No two groups of things stand closer than GAP, a group stands at a wall or at least GAP from it,
 and the doors' aprons stay free: so whatever is placed, no room is cut in two.
@@ -78,7 +78,7 @@ def _draw(plan: FloorPlan, group: Group) -> None:
 
 
 def _proposals(rng: np.random.Generator, room: Room) -> list[Group]:
-    """Return what one would like to have in such a room, the most important first."""
+    """Return the furniture proposed for a room, the most important first."""
     left, bottom, right, top = room.rect
     area = (right - left) * (top - bottom)
     if room.kind == 'corridor':
@@ -114,7 +114,7 @@ def _desk(rng: np.random.Generator) -> Group:
 
 
 def _chair(x: float, y: float) -> tuple[Disc, ...]:
-    """Return what a laser sees of an office chair: a post and four castors."""
+    """Return the parts of an office chair that a laser sees: a post and four castors."""
     castors = ((-0.2, 0.0), (0.2, 0.0), (0.0, -0.2), (0.0, 0.2))
     return (Disc(x, y, LEG), *(Disc(x + dx, y + dy, LEG) for dx, dy in castors))
 

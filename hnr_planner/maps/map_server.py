@@ -46,7 +46,7 @@ MODES = ('trinary', 'scale', 'raw')
 #: Keys that a map must have.
 REQUIRED = ('image', 'resolution', 'origin', 'negate', 'occupied_thresh', 'free_thresh')
 
-#: What `save_map` writes: map_server's customary greys, and thresholds that tell them apart
+#: What ``save_map`` writes: map_server's customary greys, and thresholds that tell them apart
 #: (grey 205 is occ = .19608, so that a free_thresh of .25 would call the unknown free).
 _GREY_OF = {FREE: 254, UNKNOWN: 205, OCCUPIED: 0}
 _OCCUPIED_THRESH, _FREE_THRESH = 0.65, 0.196

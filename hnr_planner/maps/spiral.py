@@ -17,7 +17,7 @@ import numpy as np
 
 
 class _Arm(NamedTuple):
-    """One straight piece, in cells: its rectangle, how wide it is and where it leads."""
+    """One straight piece [cells]: its rectangle, width and direction."""
 
     rows: slice
     columns: slice

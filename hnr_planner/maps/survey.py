@@ -1,5 +1,5 @@
 """
-What a laser makes of a floor: a simulated survey of a floor plan.
+Simulate the survey of a floor plan by a laser scanner.
 
 A scanner stands at many places of every room, each known up to a small error. Its rays stop at
 the first solid thing, with noise in range, and at panes of glass almost always. A cell is
@@ -28,7 +28,7 @@ ROOM_TO_STAND = 0.4  # half of the side of the square that the scanner needs [m]
 def survey(
     rng: np.random.Generator, plan: FloorPlan, resolution: float, margin: float
 ) -> OccupancyMap:
-    """Return the map that the survey draws, with ``margin`` [m] around the building."""
+    """Return the map of a survey, with ``margin`` [m] around the building."""
     sides = np.array(plan.material.shape) * CELL + 2 * margin
     height, width = (round(side / resolution) for side in sides)
     hits = np.zeros(height * width, np.int64)
@@ -50,7 +50,7 @@ def survey(
 
 
 def _places(rng: np.random.Generator, plan: FloorPlan) -> list[NDArray[np.floating]]:
-    """Return where the scanner stands: a disturbed lattice in every room, off the furniture."""
+    """Return the positions of the scanner: a perturbed lattice in every room, off furniture."""
     places: list[NDArray[np.floating]] = []
     for room in plan.rooms:
         left, bottom, right, top = room.rect.grown(-0.6)

@@ -29,8 +29,8 @@ COLOURS = ('#0072B2', '#D55E00', '#009E73', '#CC79A7', '#E69F00', '#56B4E9')
 MOST_SAMPLES = 60_000
 #: Scripts of the page, in the order in which it runs them.
 SCRIPTS = ('searches.js', 'drawing.js', 'view.js', 'page.js')
-#: What each planner does, by its name.
-ABOUT = {entry.name: f'{entry.name}: {entry.summary}.' for entry in PLANNERS}
+#: What each planner does, as a sentence, by its name.
+ABOUT = {entry.name: f'{entry.summary[:1].upper()}{entry.summary[1:]}.' for entry in PLANNERS}
 
 
 class Shown(NamedTuple):

@@ -161,7 +161,7 @@ class TestProcesses:
 
     @pytest.fixture
     def processes(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Processes:
-        """Return processes that find the modules `stubborn`, `brief` and `patient`."""
+        """Return processes that find the modules ``stubborn``, ``brief`` and ``patient``."""
         ignore = 'import signal; signal.signal(signal.SIGTERM, signal.SIG_IGN)\n'
         wait = 'print("up", flush=True)\nimport time\ntime.sleep(60)\n'
         (tmp_path / 'stubborn.py').write_text(ignore + wait)

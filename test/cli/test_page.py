@@ -19,6 +19,7 @@ from test.cli.conftest import at, OFFICE, Ran
 from typing import Any
 
 from hnr_planner.core import GridSpace, plan
+from hnr_planner.core.planning.registry import PLANNERS
 from hnr_planner.maps import load_map, OccupancyMap
 from hnr_planner.page.write import path_as_found
 from matplotlib.colors import to_rgb
@@ -311,7 +312,8 @@ def test_zoom_keeps_the_place_under_the_pointer_and_fit_comes_back(page: Page) -
 
 def test_words_say_what_is_to_be_seen(page: Page) -> None:
     page.go_to(Keys.HOME)
-    assert 'random direction' in page.text('#caption')
+    (about,) = (entry.summary for entry in PLANNERS if entry.name == 'hit_and_run')
+    assert page.text('#caption')[1:] == f'{about[1:]}.'
     page.go_to(Keys.END)
     assert page.result is not None
     assert f'{page.result["length"]:.1f} m' in page.text('#caption')

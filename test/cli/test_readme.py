@@ -8,8 +8,11 @@ import sys
 from test.cli.conftest import ROOT
 from test.cli.pictures import check_picture
 
+from hnr_planner.core.planning.registry import PLANNERS
 from PIL import Image
 import pytest
+
+pytestmark = pytest.mark.usefixtures('compiled')
 
 README = (ROOT / 'README.md').read_text()
 
@@ -82,6 +85,12 @@ def test_links_lead_somewhere(page: Path) -> None:
     assert links
     here = [link for link in links if not link.startswith('https://')]
     assert [link for link in here if not leads_somewhere(page, link)] == []
+
+
+def test_the_table_of_algorithms_is_the_registry() -> None:
+    table = README.partition('| `algorithm` | how it searches |')[2].partition('\n\n')[0]
+    rows = [line for line in table.splitlines() if line.startswith('| `')]
+    assert rows == [f'| `{entry.name}` | {entry.summary} |' for entry in PLANNERS]
 
 
 def test_make_targets_exist() -> None:
