@@ -3,8 +3,11 @@
 import os
 
 from hnr_planner.core import warm_up
+from hnr_planner.core.kernels import modes
 import pytest
 
+# Tests run machine code and wait for it to be compiled, in processes that they start as well.
+modes.set_mode(os.environ.setdefault(modes.VARIABLE, 'compiled'))
 # Set before the first message class is imported.
 # Without these checks a field of the wrong type goes out as garbage, silently.
 os.environ['ROS_PYTHON_CHECK_FIELDS'] = '1'

@@ -1,22 +1,47 @@
-"""Compiling everything before anyone waits for it."""
+"""
+Machine code ahead of the first request: waited for, in the background, or for an image.
+
+A use of the package (``USES``) is a workload: a function that asks what requests of that use ask,
+on a small grid. ``warm_up`` runs it and compiles what is missing on the way;
+``compile_in_background`` returns at once; ``compile_all`` reports its progress.
+"""
+
+from collections.abc import Callable
+import math
+from typing import TypeAlias
 
 from hnr_planner.core.checks import check_choice
+from hnr_planner.core.kernels.compilation import prepare
+from hnr_planner.core.kernels.compiler import needs_of
+from hnr_planner.core.kernels.modes import Mode, mode_of_thread
+from hnr_planner.core.kernels.needs import Workload
+from hnr_planner.core.planning.limits import Budget
 from hnr_planner.core.planning.plan import plan
+from hnr_planner.core.planning.planner import make_problem
+from hnr_planner.core.planning.planners.auto import flood
 from hnr_planner.core.planning.registry import ALGORITHMS
 from hnr_planner.core.sampling.sample import sample
 from hnr_planner.core.sampling.walks import WALKS
 from hnr_planner.core.spaces.grid.grid_space import GridSpace
 from hnr_planner.core.systems import DoubleIntegrator
 from hnr_planner.core.trajectories.plan_trajectory import plan_trajectory
+from hnr_planner.core.trajectories.problem import Motion
+from hnr_planner.core.trajectories.reduce import reduce
 from hnr_planner.core.trajectories.registry import KINODYNAMIC_PLANNERS
+from hnr_planner.core.trajectories.request import check_kinodynamic_request
 import numpy as np
 
 START, GOAL = (0.5, 0.5), (2.5, 2.5)
+#: Transitions of each search: enough to need all that a search needs.
+N_ITERATIONS = 300
+
+#: Called with how many kernels are done, how many there are, and the name of the last one.
+Progress: TypeAlias = Callable[[int, int, str], None]
 
 
 def warm_up(*uses: str) -> None:
     """
-    Compile, or load from the cache, all that requests on a grid need: answer some on a small one.
+    Compile, or load from the cache, all that requests on a grid need, and wait for it.
 
     Parameters
     ----------
@@ -29,30 +54,172 @@ def warm_up(*uses: str) -> None:
         When a use is none of these.
 
     """
-    space = GridSpace.from_blocked(np.zeros((3, 3), dtype=bool))
-    for use in uses or tuple(_USES):
-        _USES[check_choice('use', use, tuple(_USES))](space)
+    with mode_of_thread(Mode.COMPILED):
+        for workload in _workloads(uses):
+            workload.run()
 
 
-def _find_paths(space: GridSpace) -> None:
+def compile_in_background(*uses: str) -> None:
+    """
+    Load all that requests on a grid need, and compile what is not in the cache; return at once.
+
+    Requests are answered meanwhile, and what they wait for comes first.
+    ``hnr_planner.core.kernels.compilation.status`` says how far it is.
+
+    Parameters
+    ----------
+    *uses : str
+        As for ``warm_up``.
+
+    Raises
+    ------
+    RequestError
+        When a use is none of these.
+
+    """
+    for workload in _workloads(uses):
+        prepare(workload)
+
+
+def compile_all(*uses: str, progress: Progress | None = None) -> int:
+    """
+    Compile into the cache all that requests on a grid need, for installers and images.
+
+    Parameters
+    ----------
+    *uses : str
+        As for ``warm_up``.
+    progress : callable, optional
+        Called after each kernel with how many are done, how many there are, and its name.
+
+    Returns
+    -------
+    int
+        How many kernels were compiled: those that were not in the cache.
+
+    Raises
+    ------
+    RequestError
+        When a use is none of these.
+
+    """
+    needs = list(dict.fromkeys(need for use in _workloads(uses) for need in needs_of(use)))
+    compiled = 0
+    for done, need in enumerate(needs, start=1):
+        kernel, signature = need.resolve()
+        compiled += kernel.ensure_compiled(signature)
+        if progress is not None:
+            progress(done, len(needs), need.name)
+    return compiled
+
+
+def find_paths() -> None:
+    """Plan by every algorithm, with every option that needs kernels of its own."""
+    space, winding = _grid_with_island(), _winding_grid()
     for algorithm in ALGORITHMS:
-        plan(space, START, GOAL, algorithm=algorithm, seed=0, optimize_iterations=1)
-    plan(space, START, GOAL, seed=0, alternatives=2, clearance=1.0)
+        for grid in (space, winding):
+            plan(
+                grid,
+                START,
+                GOAL,
+                algorithm=algorithm,
+                seed=0,
+                optimize_iterations=1,
+                time_limit=math.inf,
+                max_iterations=N_ITERATIONS,
+            )
+    plan(space, START, GOAL, seed=0, alternatives=2, clearance=1.0, time_limit=math.inf)
+    flood(make_problem(space, np.array(START), np.array(GOAL), 0.0))
     space.nearest_reachable(START, GOAL, 1.0)
     space.clearance(START)
     space.path_clearance([START, GOAL])
 
 
-def _find_motions(space: GridSpace) -> None:
+def find_motions() -> None:
+    """Plan for a system by every algorithm, and what only fast starts and long motions need."""
+    space, system, start = _small_grid(), DoubleIntegrator(), (*START, 0.0, 0.0)
     for algorithm in KINODYNAMIC_PLANNERS:
-        state, system = (*START, 0.0, 0.0), DoubleIntegrator()
-        plan_trajectory(space, system, state, GOAL, algorithm=algorithm, goal_radius=1.0, seed=0)
+        plan_trajectory(
+            space,
+            system,
+            start,
+            GOAL,
+            algorithm=algorithm,
+            goal_radius=1.0,
+            seed=0,
+            time_limit=math.inf,
+            max_iterations=N_ITERATIONS,
+        )
+    wall = np.zeros((3, 3), dtype=bool)
+    wall[0, 2] = True
+    towards_wall = (*START, 1.9, 0.0)
+    plan_trajectory(
+        GridSpace.from_blocked(wall),
+        DoubleIntegrator(max_speed=2.0),
+        towards_wall,
+        GOAL,
+        seed=0,
+        time_limit=math.inf,
+        max_iterations=N_ITERATIONS,
+    )
+    _reduce_motion(space, system, start)
 
 
-def _draw_samples(space: GridSpace) -> None:
+def _reduce_motion(space: GridSpace, system: DoubleIntegrator, start: tuple[float, ...]) -> None:
+    """Reduce a motion of one step: there is nothing to do, but it needs the same kernel."""
+    request = check_kinodynamic_request(
+        space,
+        system,
+        start,
+        GOAL,
+        algorithm='auto',
+        settings={},
+        goal_radius=1.0,
+        goal_speed=math.inf,
+        boundary='forbidden',
+        simplify=None,
+        seed=0,
+    )
+    at_rest = np.stack([request.problem.start] * 2)
+    motion = Motion(np.ones(1), at_rest, np.zeros((1, system.control_dim)))
+    reduce(request.problem, motion, request.geometric.stream(0), Budget(math.inf))
+
+
+def draw_samples() -> None:
+    """Draw by every walk, and ask for a chord."""
+    space = _small_grid()
     for walk in WALKS:
         sample(space, START, 1, walk=walk, seed=0)
     space.chord(START, (1.0, 0.0))
 
 
-_USES = {'paths': _find_paths, 'motions': _find_motions, 'samples': _draw_samples}
+def _small_grid() -> GridSpace:
+    return GridSpace.from_blocked(np.zeros((3, 3), dtype=bool))
+
+
+def _grid_with_island() -> GridSpace:
+    """Return a room with an obstacle between start and goal: paths have to be shortened."""
+    blocked = np.zeros((12, 12), dtype=bool)
+    blocked[4:8, 4:8] = True
+    return GridSpace.from_blocked(blocked, 0.25)
+
+
+def _winding_grid() -> GridSpace:
+    """Return a winding corridor, in which searches need more than a first batch of steps."""
+    blocked = np.zeros((15, 15), dtype=bool)
+    blocked[1::2] = True
+    blocked[1::4, -1] = blocked[3::4, 0] = False
+    return GridSpace.from_blocked(blocked, 0.2)
+
+
+#: The workload of each use.
+USES = {
+    'paths': Workload(__name__, 'find_paths'),
+    'motions': Workload(__name__, 'find_motions'),
+    'samples': Workload(__name__, 'draw_samples'),
+}
+
+
+def _workloads(uses: tuple[str, ...]) -> list[Workload]:
+    """Return the workloads of uses, all if there are none named; or raise RequestError."""
+    return [USES[check_choice('use', use, tuple(USES))] for use in uses or USES]

@@ -20,7 +20,7 @@ from typing import Any, NamedTuple
 
 from hnr_planner import __version__
 from hnr_planner.core.errors import HnrError
-from hnr_planner.core.kernels.kernel import CORE, source_digest
+from hnr_planner.core.kernels.cache_folder import CORE, source_digest
 import numpy as np
 from numpy.typing import NDArray
 

@@ -6,7 +6,7 @@ from typing import Any
 
 from hnr_planner.core import GridSpace
 from hnr_planner.core.kernels.kernel import interpreted
-from hnr_planner.core.spaces.curves.curve import Arc, leave_curve_from, Parabola
+from hnr_planner.core.spaces.curves.curve import Arc, first_exit_on_curve, Parabola
 import numpy as np
 import pytest
 
@@ -43,8 +43,8 @@ def test_contact_on_a_grid_is_where_brute_force_finds_it(draw: Any) -> None:
         if not space.contains(x):
             continue
         curve, end, part = draw(rng, space.to_kernel(x))
-        left = leave_curve_from(space.data, curve, end)
-        assert left == interpreted(leave_curve_from)(space.data, curve, end)
+        left = first_exit_on_curve(space.data, curve, end)
+        assert left == interpreted(first_exit_on_curve)(space.data, curve, end)
         if left == math.inf:
             assert not curve_collisions(part(end), blocked)
             free += 1
@@ -58,7 +58,7 @@ def test_contact_on_a_grid_is_where_brute_force_finds_it(draw: Any) -> None:
 def on_empty(curve: Any, end: float) -> float:
     """Leave an empty map of 20 x 20 cells, whose corner lies at (1, 1) of the kernel frame."""
     space = GridSpace.from_blocked(np.zeros((20, 20), dtype=bool))
-    return leave_curve_from(space.data, curve, end)
+    return first_exit_on_curve(space.data, curve, end)
 
 
 def test_contact_is_the_root_in_closed_form() -> None:
@@ -89,8 +89,8 @@ def test_a_throw_over_a_wall_lands_behind_it() -> None:
     x, v, a = np.array([2.0, 1.0]), np.array([2.0, 5.0]), np.array([0.0, -2.0])
     assert not space.is_motion_valid(x, x + 5.0 * v + 12.5 * a)
     kernel = space.to_kernel(x)
-    assert leave_curve_from(space.data, Parabola(kernel, v, a), 5.0) == math.inf
+    assert first_exit_on_curve(space.data, Parabola(kernel, v, a), 5.0) == math.inf
     low = Parabola(kernel, v * (1.0, 0.5), a)
-    contact = leave_curve_from(space.data, low, 5.0)
+    contact = first_exit_on_curve(space.data, low, 5.0)
     checked: Curve = Throw(x, v * (1.0, 0.5), a, contact - 1e-9)
     assert contact < 5.0 and not curve_collisions(checked, blocked)

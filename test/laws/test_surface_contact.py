@@ -12,7 +12,7 @@ from hnr_planner.core import (
     Space,
     UnionSpace,
 )
-from hnr_planner.core.spaces.curves.curve import Arc, knows_curves, leave_curve_from, Parabola
+from hnr_planner.core.spaces.curves.curve import Arc, knows_curves, first_exit_on_curve, Parabola
 import numpy as np
 import pytest
 from shapely import Polygon
@@ -70,7 +70,7 @@ def test_contact_lies_between_the_last_free_look_and_the_next(name: str, space: 
         if not space.contains(x):
             continue
         curve, end = draw_curve(rng, x, space.dim == 2), rng.uniform(0.1, 3.0)
-        left = leave_curve_from(space.data, curve, end)
+        left = first_exit_on_curve(space.data, curve, end)
         times = np.linspace(0.0, end, LOOKS)
         out = np.flatnonzero(~space.contains(points_on(curve, times)))
         if len(out) == 0:
@@ -95,9 +95,9 @@ def chord_is_short(space: Space, curve: Any, left: float, step: float) -> bool:
 def test_a_gap_that_rays_pass_is_passed_by_curves() -> None:
     rooms = UnionSpace(BoxSpace((0, 0), (0.3, 1)), BoxSpace((0.1 + 0.2, 0), (1, 1)))
     x, v, a = np.array([0.1, 0.5]), np.array([0.5, 0.1]), np.array([0.1, -0.2])
-    assert leave_curve_from(rooms.data, Parabola(x, v, a), 1.0) == math.inf
+    assert first_exit_on_curve(rooms.data, Parabola(x, v, a), 1.0) == math.inf
     apart = UnionSpace(BoxSpace((0, 0), (0.3, 1)), BoxSpace((0.3 + 1e-6, 0), (1, 1)))
-    contact = leave_curve_from(apart.data, Parabola(x, v, a), 1.0)
+    contact = first_exit_on_curve(apart.data, Parabola(x, v, a), 1.0)
     assert x[0] + contact * v[0] + contact**2 / 2 * a[0] == pytest.approx(0.3, abs=1e-12)
 
 

@@ -2,7 +2,7 @@
 Functions whose kernel is picked by the type of their first argument.
 
 What ``functools.singledispatch`` is to Python, ``dispatched`` is to kernels. The decorated
-function says what is asked, and is the answer for every type that registers no other:
+kernel states the contract, and answers for every type that registers no other:
 
 >>> @dispatched
 ... @kernel
@@ -14,16 +14,16 @@ function says what is asked, and is the answer for every type that registers no 
 ...     return math.pi * disc.radius**2
 
 Compiled code that calls ``area`` gets the kernel for the NamedTuple that it is compiled for, and
-looks nothing up when it runs. Interpreted code reaches the same kernels interpreted, so that both
-can be compared.
+looks nothing up when it runs. Python that calls ``area`` calls that kernel, with the tiers that
+every kernel has. Interpreted code calls its interpreted form.
 """
 
 from collections.abc import Callable
 from functools import cache, wraps
 from typing import Any, Protocol
 
-from hnr_planner.core.kernels.kernel import INLINED, interpreted, recompiled
-from numba.core.dispatcher import Dispatcher
+from hnr_planner.core.kernels.kernel import another, INLINED, Kernel
+from numba.core import types
 from numba.extending import overload
 
 
@@ -31,43 +31,74 @@ class Dispatched(Protocol):
     """A function with a kernel for each type of its first argument."""
 
     def __call__(self, *arguments: Any) -> Any:
-        """Run the kernel for the first argument, interpreted."""
+        """Call the kernel for the first argument."""
 
-    def register(self, data_type: type) -> Callable[[Dispatcher], Dispatcher]:
+    def interpreted(self, *arguments: Any) -> Any:
+        """Run the kernel for the first argument interpreted."""
+
+    def interpreted_form(self, *arguments: Any) -> Any:
+        """Call the interpreted form of the kernel for the first argument."""
+
+    def kernel_for(self, first: Any) -> Kernel:
+        """Return the kernel that answers for a first argument."""
+
+    def register(self, data_type: type) -> Callable[[Kernel], Kernel]:
         """Return a decorator: its kernel answers for NamedTuples of ``data_type``."""
 
     def knows(self, data: Any) -> bool:
-        """Say whether a kernel is registered for the type of ``data``."""
+        """Return whether a kernel is registered for the type of ``data``."""
 
 
-def dispatched(default: Dispatcher) -> Dispatched:
+def dispatched(default: Kernel) -> Dispatched:
     """Let other kernels answer for a kernel, each for a type of its first argument."""
-    kernels: dict[type, Dispatcher] = {}
+    kernels: dict[type, Kernel] = {}
+
+    def kernel_for(first: Any) -> Kernel:
+        return kernels.get(type(first), default)
 
     @wraps(default.py_func)
     def call(*arguments: Any) -> Any:
-        return interpreted(kernels.get(type(arguments[0]), default))(*arguments)
+        return kernel_for(arguments[0])(*arguments)
 
-    # What is made of parts asks the same of its parts, which may be made of parts as well: to
-    # numba that is one kernel that calls itself for other types, which it cannot link. So every
-    # type has a kernel of its own.
+    # What has members asks the same of its members, which may have members as well: to numba that
+    # is one kernel that calls itself for other types, which it cannot link. So every such type has
+    # a kernel of its own.
     @cache
-    def own_kernel(first: Any) -> Dispatcher:
-        return recompiled(kernels.get(first.instance_class, default))
+    def own_kernel(first: Any) -> Kernel:
+        registered = kernels.get(first.instance_class, default)
+        return another(registered) if _has_members(first) else registered
 
     @overload(call, jit_options=INLINED)
     def compile_call(first, *rest):
         own = own_kernel(first)
         return lambda first, *rest: own(first, *rest)
 
-    def register(data_type: type) -> Callable[[Dispatcher], Dispatcher]:
-        def add(answer: Dispatcher) -> Dispatcher:
+    def register(data_type: type) -> Callable[[Kernel], Kernel]:
+        def add(answer: Kernel) -> Kernel:
             kernels[data_type] = answer
             return answer
 
         return add
 
+    def run_interpreted(*arguments: Any) -> Any:
+        return kernel_for(arguments[0]).interpreted(*arguments)
+
+    def call_form(*arguments: Any) -> Any:
+        return kernels.get(type(arguments[0]), default).interpreted_form(*arguments)
+
     answering: Any = call
+    answering.interpreted = run_interpreted
+    answering.interpreted_form = call_form
+    answering.kernel_for = kernel_for
     answering.register = register
     answering.knows = lambda data: type(data) in kernels
     return answering
+
+
+def _has_members(data: Any) -> bool:
+    """Return whether a tuple of compiled code holds a NamedTuple, however deep."""
+    return any(
+        isinstance(member, types.BaseNamedTuple)
+        or (isinstance(member, types.BaseTuple) and _has_members(member))
+        for member in data
+    )

@@ -93,6 +93,18 @@ def segment_is_free(space: Any, a: Any, b: Any) -> bool:
     return not u.any() or first_exit(space, a, u, 0.0, 1.0) > 1.0
 
 
+@dispatched
+@kernel
+def flood_path(space: Any, start: Any, goal: Any, goal_radius: float, margin: float) -> Any:
+    """
+    Return a free path (m, dim) from ``start`` into the goal region, wherever there is one.
+
+    It may be long. It ends at ``goal`` for a ``goal_radius`` of 0, else at a point ``margin`` or
+    more inside the space. (0, dim) where there is none, or the space does not know.
+    """
+    return np.empty((0, len(start)))
+
+
 def kind_of(space: Any) -> tuple[Any, ...]:
     """Return what compiled code is made for: the type of a compiled space and of its parts."""
     return (type(space), *(kind_of(part) for part in space if contains.knows(part)))
@@ -121,23 +133,11 @@ def contains_around(space, x, slack):
 
 
 @kernel
-def part_of(space, x):
-    """Return the number of the connected part that holds ``x``: ``component`` for Python."""
-    return component(space, x)
-
-
-@kernel
 def chord(space, x, u):
     """Return the ends of the largest free interval of ``x + s u`` around ``s = 0``."""
     if not contains(space, x):
         return 0.0, 0.0
     return around(space, x, u, -u)
-
-
-@kernel
-def sees_from(space, a, b):
-    """Say whether the closed segment from ``a`` to ``b`` is free, for Python."""
-    return segment_is_free(space, a, b)
 
 
 @kernel

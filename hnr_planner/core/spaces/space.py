@@ -13,7 +13,12 @@ from abc import ABC, abstractmethod
 from typing import Any, NamedTuple
 
 from hnr_planner.core.checks import check_direction, check_point, check_points, Floats
-from hnr_planner.core.spaces.primitives import are_free, chord, first_blocked_segment, sees_from
+from hnr_planner.core.spaces.primitives import (
+    are_free,
+    chord,
+    first_blocked_segment,
+    segment_is_free,
+)
 import numpy as np
 from numpy.typing import ArrayLike
 
@@ -171,7 +176,7 @@ class Space(ABC):
         """Say whether every point of the closed segment from ``start`` to ``end`` is free."""
         a = self.to_kernel(check_point('start', start, self.dim))
         b = self.to_kernel(check_point('end', end, self.dim))
-        return bool(sees_from(self.data, a, b))
+        return bool(segment_is_free(self.data, a, b))
 
     def first_blocked_segment(self, path: ArrayLike) -> int | None:
         """Return the index of the first segment of a path (m, dim) that is not free, if any."""

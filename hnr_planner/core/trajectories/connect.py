@@ -13,7 +13,6 @@ from hnr_planner.core.checks import Floats
 from hnr_planner.core.kernels.kernel import kernel
 from hnr_planner.core.kernels.streams import Stream
 from hnr_planner.core.planning.planner import (
-    compile_search,
     PathSearch,
     Problem,
     reaches_goal,
@@ -150,16 +149,6 @@ class KinodynamicConnectSearch:
         self._is_direct = is_direct(self._from_rest)
         if not self._is_direct:
             self._path_search = HitAndRunConnect().start(self._from_rest, self.rng)
-
-
-def compile_connect(problem: KinodynamicProblem) -> None:
-    """Compile what a search runs once its start is at rest, without searching."""
-    geometric = problem.geometric._replace(start=problem.geometric.lower)
-    is_direct(geometric)
-    motion_to(first_step(problem), 0)
-    compile_search(HitAndRunConnect(), geometric)
-    stops = np.stack([geometric.start, geometric.start])
-    drive_stops(problem.system, shorten_stops(geometric, stops))
 
 
 @kernel

@@ -46,12 +46,6 @@ def is_collision_inevitable(
     return isinstance(space, GridData) and _is_trapped(space.free_distance, x, v, acceleration)
 
 
-def compile_inevitable(space: Any) -> None:
-    """Compile the proof for a kind of space, for a robot at rest in the corner."""
-    if isinstance(space, GridData):
-        _is_trapped(space.free_distance, np.ones(2), np.zeros(2), 1.0)
-
-
 @kernel
 def _is_trapped(free_distance, x, v, acceleration):
     """Follow the cells that the robot may be in, slice by slice; return whether none is left."""

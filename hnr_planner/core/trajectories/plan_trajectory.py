@@ -17,7 +17,6 @@ from hnr_planner.core.spaces.space import Space
 from hnr_planner.core.systems.system import System
 from hnr_planner.core.systems.trajectory import Trajectory
 from hnr_planner.core.trajectories.attempt import Found, search_trajectory, shortened
-from hnr_planner.core.trajectories.compile import compile_kernels
 from hnr_planner.core.trajectories.problem import Boundary, KinodynamicPlanner, KinodynamicSearch
 from hnr_planner.core.trajectories.reduce import STEPS_MAX
 from hnr_planner.core.trajectories.request import (
@@ -131,7 +130,6 @@ def plan_trajectory(
         seed=seed,
     )
     check_optimization(request, effort)
-    compile_kernels(request)
 
     began = working_time()
     budget = effort.budget(began)

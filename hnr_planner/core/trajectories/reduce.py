@@ -31,11 +31,11 @@ def reduce(problem: KinodynamicProblem, motion: Motion, rng: Stream, budget: Bud
     durations, states, controls = (array.copy() for array in motion)
     n = len(durations)
     for _ in range(PROPOSALS // PROPOSALS_IN_A_BATCH):
-        if n <= STEPS_ENOUGH or budget.stop() is not None:
-            break
         n = _reduce(
             problem, durations, states, controls, n, rng, PROPOSALS_IN_A_BATCH, STEPS_ENOUGH
         )
+        if n <= STEPS_ENOUGH or budget.stop() is not None:
+            break
     return Motion(durations[:n].copy(), states[: n + 1].copy(), controls[:n].copy())
 
 

@@ -8,10 +8,10 @@ import sys
 from test.laws import maps
 
 from hnr_planner.core import GridSpace
-from hnr_planner.core.kernels import kernel as kernels
+from hnr_planner.core.kernels import cache_folder
 from hnr_planner.core.kernels.kernel import interpreted
 from hnr_planner.core.kernels.streams import stream
-from hnr_planner.core.planning.alternatives.alternatives import class_graph
+from hnr_planner.core.planning.alternatives import class_graph
 from hnr_planner.core.planning.homology import islands_at, NO_ISLANDS
 from hnr_planner.core.planning.planner import Problem
 from hnr_planner.core.planning.planners import hit_and_run_connect as connect
@@ -49,7 +49,7 @@ def chord_of_copy(folder: Path, cache: Path) -> float:
 @pytest.fixture
 def copy(tmp_path: Path) -> Path:
     """Return a folder with a copy of the core that a test may edit."""
-    core = Path(kernels.__file__).parents[1]
+    core = Path(cache_folder.__file__).parents[1]
     shutil.copytree(core, tmp_path / 'hnr_planner' / 'core')
     (tmp_path / 'hnr_planner' / '__init__.py').touch()
     return tmp_path
@@ -75,7 +75,7 @@ def test_a_cache_that_ignores_other_files_would_be_stale(copy: Path, tmp_path: P
     """Show that the test above can fail: it does with one folder for all sources."""
     core = copy / 'hnr_planner' / 'core'
     edit(
-        core / 'kernels' / 'kernel.py',
+        core / 'kernels' / 'cache_folder.py',
         'return digest.hexdigest()[:16]',
         "return 'always the same'",
     )
@@ -84,16 +84,18 @@ def test_a_cache_that_ignores_other_files_would_be_stale(copy: Path, tmp_path: P
     assert chord_of_copy(copy, tmp_path / 'cache') == 2.5
 
 
-def test_without_a_folder_to_write_kernels_are_kept_for_this_run_with_a_warning(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+def test_without_a_folder_to_write_another_takes_its_place(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ):
     occupied = tmp_path / 'a file'
     occupied.touch()
     monkeypatch.setenv('NUMBA_CACHE_DIR', str(occupied))
-    with pytest.warns(RuntimeWarning, match='NUMBA_CACHE_DIR'):
-        folder = kernels.cache_folder.__wrapped__()
+    folder = cache_folder.cache_folder.__wrapped__()
     assert folder.is_dir()
-    folder.rmdir()
+    (record,) = caplog.records
+    assert 'set NUMBA_CACHE_DIR' in record.getMessage()
+    monkeypatch.setenv('NUMBA_CACHE_DIR', str(cache_folder.cache_home(folder)))
+    assert cache_folder.cache_folder.__wrapped__() == folder
 
 
 # -- interpreted and compiled agree to the last bit ----------------------------------------------
@@ -108,8 +110,7 @@ def both(kernel, *arguments):
     outcomes = []
     for function in (kernel, interpreted(kernel)):
         own = [value.copy() if isinstance(value, np.ndarray) else value for value in arguments]
-        with np.errstate(over='ignore', divide='ignore'):  # as compiled code does
-            outcomes.append((function(*own), own))
+        outcomes.append((function(*own), own))
     return outcomes
 
 
@@ -146,8 +147,7 @@ def test_rrt():
         tree = nearest.empty_box_tree(LOWER, UPPER, 301)
         insert(tree, vertices, 0)
         far = PROBLEM._replace(goal=np.array([-9.0, -9.0]), goal_radius=1.0)
-        with np.errstate(over='ignore'):
-            done = grow(far, np.inf, stream(5), vertices, parents, 1, tree, 300)
+        done = grow(far, np.inf, stream(5), vertices, parents, 1, tree, 300)
         outcome.extend([done, vertices, parents, tuple(tree)])
     assert_same(compiled, plain)
 
@@ -155,8 +155,7 @@ def test_rrt():
 def test_hit_and_run_connect():
     outcomes = []
     for begin in (connect._begin, interpreted(connect._begin)):
-        with np.errstate(over='ignore'):
-            trees, done = begin(PROBLEM, stream(5), 120)
+        trees, done = begin(PROBLEM, stream(5), 120)
         rows = int(trees.table.sizes.sum())
         assert rows > 10
         outcomes.append(
@@ -165,7 +164,6 @@ def test_hit_and_run_connect():
     assert_same(*outcomes)
 
 
-@pytest.mark.filterwarnings('ignore:overflow')  # signatures are sums modulo 2^64
 @pytest.mark.parametrize('islands', [NO_ISLANDS, islands_at(GRID.island_points)])
 def test_simplify(islands):
     chain = zigzag()
@@ -182,7 +180,6 @@ def zigzag() -> np.ndarray:
     return chain
 
 
-@pytest.mark.filterwarnings('ignore:overflow')
 def test_alternatives():
     points, islands = zigzag(), islands_at(GRID.island_points)
     edges = both(class_graph.near_edges, GRID.data, points, np.arange(60), 8)
@@ -192,7 +189,6 @@ def test_alternatives():
     assert_same(*both(class_graph.is_simple, points))
 
 
-@pytest.mark.filterwarnings('ignore:overflow')
 def test_stand_off():
     wish = stand_off.clearance_cost(GRID, 0.2)
     islands = islands_at(GRID.island_points)

@@ -200,9 +200,3 @@ def point_at(curve, t, x):
     """Write the point of a curve at ``t``."""
     for i in range(len(x)):
         x[i] = at(coordinate(curve, i), t)
-
-
-@kernel
-def leave_curve_from(space, curve, end):
-    """Return what ``first_exit_on_curve`` does, for Python."""
-    return first_exit_on_curve(space, curve, end)

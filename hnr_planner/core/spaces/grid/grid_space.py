@@ -8,13 +8,14 @@ from typing import Literal
 from hnr_planner.core.checks import check_point, check_points, check_real, Floats
 from hnr_planner.core.errors import RequestError, SpaceError
 from hnr_planner.core.spaces.clearance import path_clearance, point_clearance
+from hnr_planner.core.spaces.grid import flood  # noqa: F401  # registers its kernel
 from hnr_planner.core.spaces.grid.cells import Bools, read_blocked, read_occupancy
 from hnr_planner.core.spaces.grid.components import island_points, nearest_in_part
 from hnr_planner.core.spaces.grid.fields import components, free_distance, inflate
 from hnr_planner.core.spaces.grid.frame import GridFrame
 from hnr_planner.core.spaces.grid.lattice import build_lattice, Lattice, rough_path
 from hnr_planner.core.spaces.grid.traversal import GridData
-from hnr_planner.core.spaces.primitives import part_of
+from hnr_planner.core.spaces.primitives import component
 from hnr_planner.core.spaces.space import Space
 from hnr_planner.core.spaces.transformed import PlacedData
 import numpy as np
@@ -334,7 +335,7 @@ class GridSpace(Space):
 
     def _part(self, point: Floats) -> int:
         """Part of free space that holds a point (2,) [m]: 0 where it is not free."""
-        return int(part_of(self.data, self.frame.to_kernel(point)))
+        return int(component(self.data, self.frame.to_kernel(point)))
 
     # -- how far the walls are -------------------------------------------------------------------
 

@@ -6,7 +6,7 @@ from hnr_planner.core.checks import check_number, check_point, check_points, Flo
 from hnr_planner.core.errors import SpaceError
 from hnr_planner.core.spaces.bounds import check_bounds
 from hnr_planner.core.spaces.polygon.edges import distance_to_edges, edges_in_cells, PolygonData
-from hnr_planner.core.spaces.primitives import part_of
+from hnr_planner.core.spaces.primitives import component
 from hnr_planner.core.spaces.space import Space
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -119,7 +119,7 @@ class PolygonSpace(Space):
 
     def _part(self, point: ArrayLike) -> int:
         """Return the number of the polygon that holds a point (2,), from 1; 0 for none."""
-        return int(part_of(self.data, check_point('point', point, 2)))
+        return int(component(self.data, check_point('point', point, 2)))
 
     def _holes(self) -> list[tuple[int, 'LinearRing']]:
         """Return the rings that are holes, each with the number of its polygon."""
