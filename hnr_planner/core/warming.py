@@ -115,18 +115,19 @@ def compile_all(*uses: str, progress: Progress | None = None) -> int:
 
 def find_paths() -> None:
     """Plan by every algorithm, with every option that needs kernels of its own."""
-    space = _small_grid()
+    space, winding = _grid_with_island(), _winding_grid()
     for algorithm in ALGORITHMS:
-        plan(
-            space,
-            START,
-            GOAL,
-            algorithm=algorithm,
-            seed=0,
-            optimize_iterations=1,
-            time_limit=math.inf,
-            max_iterations=N_ITERATIONS,
-        )
+        for grid in (space, winding):
+            plan(
+                grid,
+                START,
+                GOAL,
+                algorithm=algorithm,
+                seed=0,
+                optimize_iterations=1,
+                time_limit=math.inf,
+                max_iterations=N_ITERATIONS,
+            )
     plan(space, START, GOAL, seed=0, alternatives=2, clearance=1.0, time_limit=math.inf)
     flood(make_problem(space, np.array(START), np.array(GOAL), 0.0))
     space.nearest_reachable(START, GOAL, 1.0)
@@ -194,6 +195,21 @@ def draw_samples() -> None:
 
 def _small_grid() -> GridSpace:
     return GridSpace.from_blocked(np.zeros((3, 3), dtype=bool))
+
+
+def _grid_with_island() -> GridSpace:
+    """Return a room with an obstacle between start and goal: paths have to be shortened."""
+    blocked = np.zeros((12, 12), dtype=bool)
+    blocked[4:8, 4:8] = True
+    return GridSpace.from_blocked(blocked, 0.25)
+
+
+def _winding_grid() -> GridSpace:
+    """Return a winding corridor, in which searches need more than a first batch of steps."""
+    blocked = np.zeros((15, 15), dtype=bool)
+    blocked[1::2] = True
+    blocked[1::4, -1] = blocked[3::4, 0] = False
+    return GridSpace.from_blocked(blocked, 0.2)
 
 
 #: The workload of each use.
