@@ -12,9 +12,9 @@ from typing import TypeAlias
 
 from hnr_planner.core.checks import check_choice
 from hnr_planner.core.kernels.compilation import prepare
-from hnr_planner.core.kernels.compiler import needs_of
 from hnr_planner.core.kernels.modes import Mode, mode_of_thread
 from hnr_planner.core.kernels.needs import Workload
+from hnr_planner.core.kernels.workloads import needs_of
 from hnr_planner.core.planning.limits import Budget
 from hnr_planner.core.planning.plan import plan
 from hnr_planner.core.planning.planner import make_problem

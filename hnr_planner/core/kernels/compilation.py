@@ -177,10 +177,12 @@ class _Background:
             return
         is_loaded = not notice.failure and self.load(notice.about)
         with self.lock:
-            self.asked.pop(notice.about, None)
+            was_asked = self.asked.pop(notice.about, None) is not None
+            was_general = notice.about in self.general
             self.general.pop(notice.about, None)
-            self.compiled += is_loaded
-            self.failed += not is_loaded
+            if was_asked or was_general:
+                self.compiled += is_loaded
+                self.failed += not is_loaded
         if not is_loaded:
             reason = notice.failure or 'it is not in the cache: were the sources changed?'
             _log.warning('%s stays interpreted: %s', notice.about.name, reason)

@@ -17,14 +17,13 @@ import threading
 from typing import Any, BinaryIO
 
 from hnr_planner.core.kernels.compilation import Notice
-from hnr_planner.core.kernels.kernel import calls_of
-from hnr_planner.core.kernels.needs import keep_needs, known_needs, Need, need_of, Workload
+from hnr_planner.core.kernels.needs import Need, Workload
+from hnr_planner.core.kernels.workloads import needs_of
 
 #: Time [s] after which it ends for want of work.
 PATIENCE = 5.0
-#: Order of work: what a call waits for, what uses need, and to find out what that is.
-ASKED, GENERAL = 0, 2
-FIND_OUT = 1
+#: Order of work: what a call waits for, to find out what a workload needs, and what it needs.
+ASKED, WORKLOAD, GENERAL = range(3)
 #: ``PR_SET_PDEATHSIG`` of ``prctl``.
 _DEATH_SIGNAL = 1
 
@@ -43,15 +42,11 @@ def main(parent: int) -> None:
             _, _, message = work.get(timeout=PATIENCE)
         except queue.Empty:
             return
-        if isinstance(message, Need):
-            _tell(notices, Notice(message, _compile(message)))
-        else:
-            try:
-                needs, failure = needs_of(message), ''
-            except Exception as error:
-                needs, failure = [], _reason(error)
-            _tell(notices, Notice(needs, failure))
-            for need in needs:
+        notice = _compile(message) if isinstance(message, Need) else _find_out(message)
+        pickle.dump(notice, notices)
+        notices.flush()
+        if isinstance(notice.about, list):
+            for need in notice.about:
                 work.put((GENERAL, next(numbers), need))
 
 
@@ -68,39 +63,32 @@ def _read(messages: BinaryIO, work: Any, numbers: Any) -> None:
     try:
         while True:
             message = pickle.load(messages)
-            order = ASKED if isinstance(message, Need) else FIND_OUT
+            order = ASKED if isinstance(message, Need) else WORKLOAD
             work.put((order, next(numbers), message))
     finally:
         os._exit(0)
 
 
-def _tell(notices: BinaryIO, notice: Notice) -> None:
-    pickle.dump(notice, notices)
-    notices.flush()
-
-
-def _compile(need: Need) -> str:
-    """Have machine code in the cache; return why not, or nothing."""
+def _compile(need: Need) -> Notice:
+    """Have machine code in the cache."""
     try:
         kernel, signature = need.resolve()
         kernel.ensure_compiled(signature)
     except Exception as error:  # whatever numba, the disk or an import has to say
-        return _reason(error)
-    return ''
+        return Notice(need, _reason(error))
+    return Notice(need)
+
+
+def _find_out(workload: Workload) -> Notice:
+    """Find out what a workload needs."""
+    try:
+        return Notice(needs_of(workload))
+    except Exception as error:  # whatever its own calls raise
+        return Notice([], _reason(error))
 
 
 def _reason(error: Exception) -> str:
     return f'{type(error).__name__}: {error}'.partition('\n')[0]
-
-
-def needs_of(workload: Workload) -> list[Need]:
-    """Return what a workload needs: as it was found before, or by running it interpreted."""
-    known = known_needs(workload)
-    if known is not None:
-        return known
-    needs = [need for call in calls_of(workload.run) if (need := need_of(*call)) is not None]
-    keep_needs(workload, needs)
-    return needs
 
 
 if __name__ == '__main__':

@@ -11,14 +11,14 @@ from hnr_planner.core.kernels.kernel import inlined
 
 @inlined
 def copy_into(target, source):
-    """Write a vector (n,) into another one, which may be a row: ``copy_into(rows[k], x)``."""
+    """Write a vector (n,) into another one, which may be a row of a matrix."""
     for i in range(len(target)):
         target[i] = source[i]
 
 
 @inlined
 def copy_rows(target, source):
-    """Write a matrix (m, n) into another one, which may be a slice: ``copy_rows(a[:k], b)``."""
+    """Write a matrix (m, n) into another one, which may be a slice of a larger one."""
     for k in range(target.shape[0]):
         for i in range(target.shape[1]):
             target[k, i] = source[k, i]

@@ -79,3 +79,9 @@ def gated(x):
 def uncompilable(x):
     """Return ``x`` as text, in a way that numba does not know."""
     return f'{x:{x}}' if x < 0 else vars()['x']
+
+
+def use() -> None:
+    """Make the calls of a use: a workload."""
+    halved(1.0)
+    collatz(6)

@@ -74,6 +74,63 @@ def test_what_is_asked_for_while_the_child_works_comes_as_well(start: Start, tmp
     assert [line for line in lines if not line.startswith('LOG')] == ['3', '3']
 
 
+PREPARE = """
+from hnr_planner.core.kernels.needs import Workload
+compilation.prepare(Workload(samples.__name__, 'use'))
+"""
+
+
+def test_what_a_use_needs_is_compiled_before_anybody_calls_it(start: Start):
+    lines = output(
+        start(
+            PREPARE
+            + """
+wait(lambda: compilation.status().compiled == 2)
+samples.use()
+say(interpreted_calls(), compilation.status())
+"""
+        )
+    )
+    assert lines[-1] == '0 all kernels asked for are compiled'
+    lines = output(
+        start(
+            PREPARE
+            + """
+wait(lambda: samples.halved.overloads and samples.collatz.overloads)
+samples.use()
+say(interpreted_calls(), compilation.status().running)
+"""
+        )
+    )
+    assert lines == ['0 False']
+
+
+def test_what_a_call_waits_for_comes_before_what_uses_need(start: Start, tmp_path: Path):
+    process = start(
+        'samples.gated(1.0)'
+        + PREPARE
+        + """
+names = []
+take = compilation._background.take
+def note(notice):
+    take(notice)
+    names.append('workload' if isinstance(notice.about, list) else notice.about.name)
+compilation._background.take = note
+wait(lambda: compilation.status().running)
+samples.total(samples.Pair(1.0, 2.0), 1.0)
+say('ASKED')
+wait(lambda: compilation.status().compiled >= 4 and not compilation.status().pending)
+say(*names)
+"""
+    )
+    next_line(process, 'ASKED')
+    wait_for_gate(tmp_path)
+    (tmp_path / 'open').touch()
+    names = output(process)[-1].split()
+    assert names[:3] == ['gated', '_total_of_pair', 'workload']
+    assert names[-2:] == ['halved', 'collatz']
+
+
 # -- the child ends with its parent ---------------------------------------------------------------
 
 

@@ -1,0 +1,14 @@
+"""What workloads need: found by running them interpreted, once for these sources."""
+
+from hnr_planner.core.kernels.kernel import calls_of
+from hnr_planner.core.kernels.needs import keep_needs, known_needs, Need, need_of, Workload
+
+
+def needs_of(workload: Workload) -> list[Need]:
+    """Return what a workload needs: as it was found before, or by running it interpreted."""
+    known = known_needs(workload)
+    if known is not None:
+        return known
+    needs = [need for call in calls_of(workload.run) if (need := need_of(*call)) is not None]
+    keep_needs(workload, needs)
+    return needs
