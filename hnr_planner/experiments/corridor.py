@@ -77,6 +77,7 @@ def search(case: Case, seed: int) -> TrajectoryResult:
         made.goal,
         algorithm=ALGORITHMS[case.algorithm],
         goal_radius=made.goal_radius,
+        boundary='inelastic',
         transition=case.transition,
         time_step=TIME_STEP,
         seed=seed,

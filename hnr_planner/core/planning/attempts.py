@@ -6,7 +6,6 @@ how long they took.
 """
 
 from collections.abc import Callable
-import itertools
 import math
 from typing import NamedTuple, TypeVar
 
@@ -24,6 +23,10 @@ import numpy as np
 SearchType = TypeVar('SearchType', bound=Search)
 Found = TypeVar('Found')
 
+#: Fraction of the cost that a round has to gain to count as one that did.
+LEAST_GAIN = 1e-3
+#: Searches that are begun again because their path was not free in the caller's coordinates.
+RESTARTS_MAX = 100
 #: Purposes of random streams: to search, to shorten what was found.
 SEARCH, SHORTEN = 0, 1
 
@@ -84,7 +87,8 @@ def _improved(
 ) -> tuple[Floats, float]:
     """Return a path (m, dim) shortened and moved away from walls as was asked, and its cost."""
     if request.simplify and not search.taut and len(path) > 2:
-        path = shorten(request.space, path, request.stream(number, SHORTEN), budget)
+        space, rng, found = request.space, request.stream(number, SHORTEN), path
+        path = budget.within(lambda: shorten(space, found, rng, budget), found)
     path = with_clearance(request, path, budget)
     return path, path_cost(request.space, path, request.clearance)
 
@@ -94,14 +98,24 @@ def _cost(improved: tuple[Floats, float]) -> float:
 
 
 def optimize(
-    request: Request, best: Attempt, rounds: float, budget: Budget, began: float
+    request: Request,
+    best: Attempt,
+    rounds: float,
+    patience: float,
+    budget: Budget,
+    began: float,
 ) -> tuple[Attempt, Work]:
-    """Search for better paths from fresh seeds: return the best, and the work of all searches."""
-    work, number = Work.of(best.search), 1
-    while number <= rounds and len(best.path) > 2 and budget.stop() is None:
+    """
+    Search for better paths from fresh seeds: return the best, and the work of all searches.
+
+    After ``patience`` rounds in a row that gain hardly anything no more are tried.
+    """
+    work, number, idle = Work.of(best.search), 1, 0
+    while number <= rounds and idle < patience and len(best.path) > 2 and budget.stop() is None:
         again = attempt(request, number, budget, began)
         work = work.plus(Work.of(again.search))
         number += 1
+        idle = 0 if again.cost < (1.0 - LEAST_GAIN) * best.cost else idle + 1
         if again.cost < best.cost:
             best = again
     return best, work
@@ -111,7 +125,8 @@ def with_clearance(request: Request, path: Floats, budget: Budget) -> Floats:
     """Return a path (m, dim) moved away from walls, where that was asked for."""
     if request.clearance == 0.0:
         return path
-    return increase_clearance(request.space, path, request.clearance, budget)
+    space, clearance = request.space, request.clearance
+    return budget.within(lambda: increase_clearance(space, path, clearance, budget), path)
 
 
 def _search(
@@ -151,7 +166,7 @@ def search_until_free(
         Of all searches together.
 
     """
-    for salt in itertools.count():
+    for salt in range(RESTARTS_MAX):
         search = start(salt)
         status = run(search, budget)
         if status is PlannerStatus.SOLVED:
@@ -160,8 +175,8 @@ def search_until_free(
                 return status, search, found
             status = budget.stop() or status
         if status is not PlannerStatus.SOLVED:
-            break
-    return status, search, None
+            return status, search, None
+    return PlannerStatus.ITERATION_LIMIT, search, None
 
 
 def _in_caller_s_frame(request: Request, points: Floats) -> Floats:

@@ -68,7 +68,7 @@ def crossings(islands, a, b):
 
 @kernel
 def signature(islands, path):
-    """Return the signature (int64) of a path (m, 2)."""
+    """Return the int64 that is the sum over all crossings of a path (m, 2)."""
     total = np.int64(0)
     if len(islands.x) == 0:
         return total

@@ -14,24 +14,19 @@ from hnr_planner.core.kernels.clock import working_time
 from hnr_planner.core.lengths import path_length
 from hnr_planner.core.planning.alternatives.alternatives import (
     check_alternatives,
-    compile_alternatives,
     with_alternatives,
 )
 from hnr_planner.core.planning.attempts import Attempt, attempt, optimize, with_clearance
 from hnr_planner.core.planning.ends import check_allowance, move_ends
 from hnr_planner.core.planning.limits import Budget
-from hnr_planner.core.planning.planner import compile_search, Planner, Work
-from hnr_planner.core.planning.postprocessing.clearance import compile_clearance
-from hnr_planner.core.planning.postprocessing.simplify import compile_shorten
+from hnr_planner.core.planning.planner import Planner, Work
 from hnr_planner.core.planning.request import (
     check_effort,
     check_request,
     Effort,
-    outcome_without_search,
     Request,
 )
 from hnr_planner.core.planning.result import FirstSolution, PlannerStatus, PlanResult
-from hnr_planner.core.spaces.primitives import kind_of
 from hnr_planner.core.spaces.space import Space
 import numpy as np
 from numpy.typing import ArrayLike
@@ -89,10 +84,12 @@ def plan(
         measures the distance to its walls.
     optimize_for : float
         Seconds of the call, within the time limit, in which further searches look for a shorter
-        path; a straight one ends that.
+        path; a straight one ends that. The clock only cuts: searches are bounded by their number,
+        in proportion to the seconds, and end sooner when several in a row gain nothing. So the
+        same seed gives the same path on a machine that is fast enough.
     optimize_iterations : int
-        How many more searches to run for a shorter path; together with ``optimize_for`` whichever
-        ends first.
+        Number of further searches for a shorter path; together with ``optimize_for`` whichever
+        ends first, in place of the bound above.
     alternatives : int
         How many paths to look for, none of which can be deformed into another past an obstacle:
         ``PlanResult.paths``, the shortest first. There may be fewer. All have the same ends, also
@@ -143,7 +140,6 @@ def plan(
     )
     n_paths = check_alternatives(space, alternatives, request.simplify)
     allowance = check_allowance(space, goal_tolerance, start_escape)
-    _compile(request, n_paths)
 
     began = working_time()
     budget = effort.budget(began)
@@ -175,14 +171,15 @@ def _result_of_search(
     best = attempt(request, 0, budget, began, optimizing)
     first, work = best.first, Work.of(best.search)
     if first is not None and optimizing is not None:
-        best, work = optimize(request, best, effort.optimize_rounds, optimizing, began)
+        rounds, patience = effort.optimize_rounds, effort.optimize_patience
+        best, work = optimize(request, best, rounds, patience, optimizing, began)
         budget.cut = budget.cut or optimizing.cut
     samples = request.space.from_kernel(best.search.samples)
     samples[0] = request.start
     return PlanResult(
         status=best.status,
-        message=_message(best, work.iterations, began),
-        planner=request.planner.name,
+        message=_message(request, best, work.iterations, began),
+        planner=getattr(best.search, 'made_by', request.planner.name),
         path=best.path,
         length=path_length(best.path) if len(best.path) else math.inf,
         samples=samples,
@@ -224,32 +221,12 @@ def _result_without_search(
     )
 
 
-def _message(best: Attempt, iterations: int, began: float) -> str:
+def _message(request: Request, best: Attempt, iterations: int, began: float) -> str:
     """Return a description of how a search ended."""
-    if best.status is PlannerStatus.SOLVED:
+    if best.status is PlannerStatus.SOLVED and best.first is not None:
         found = f'path of {path_length(best.path):.6g} m with {len(best.path)} vertices'
-        return f'{found} after {iterations} transitions'
+        as_found = request.simplify and not best.search.taut and best.path is best.first.path
+        nothing = ', of which no shortcut is free' if as_found and len(best.path) > 2 else ''
+        return f'{found} after {iterations} transitions{nothing}'
     seconds = working_time() - began
     return f'{best.status.value} ({iterations} transitions, {seconds:.3g} s)'
-
-
-_compiled: set[tuple[tuple[Any, ...], type[Planner], bool, bool]] = set()
-
-
-def _compile(request: Request, n_paths: int) -> None:
-    """Compile, once for each kind of space and planner, before any clock runs."""
-    space = request.space
-    kinds = kind_of(space.data), type(request.planner), n_paths > 1, request.clearance > 0.0
-    if kinds in _compiled:
-        return
-    compile_search(request.planner, request.problem)
-    outcome_without_search(request)
-    ends = np.stack([request.start, request.start])
-    compile_shorten(space, ends)
-    space.first_blocked_segment(ends)
-    space.rough_path(request.problem.start, request.problem.start)
-    if n_paths > 1:
-        compile_alternatives(request)
-    if request.clearance > 0.0:
-        compile_clearance(space, ends, request.clearance)
-    _compiled.add(kinds)

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple, Protocol
 
 from hnr_planner.core.checks import Floats
 from hnr_planner.core.kernels.kernel import kernel
-from hnr_planner.core.kernels.streams import Stream, stream
+from hnr_planner.core.kernels.streams import Stream
 from hnr_planner.core.spaces.primitives import segment_is_free
 from hnr_planner.core.spaces.space import Space
 import numpy as np
@@ -148,18 +148,6 @@ class Planner(Protocol):
 
     def start(self, problem: Problem, rng: Stream) -> PathSearch:
         """Start a search."""
-
-
-def compile_search(planner: Planner, problem: Problem) -> None:
-    """
-    Compile what searches of a planner run, both the first steps and later ones.
-
-    Nobody has looked at start and goal yet, which may lie anywhere: the bounds stand for them.
-    """
-    bounded = problem._replace(start=problem.lower, goal=problem.upper)
-    search = planner.start(bounded, stream(0))
-    for _ in range(2):
-        search.advance(0)
 
 
 def to_goal(problem: Problem, points: Floats) -> Floats:

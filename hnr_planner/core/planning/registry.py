@@ -47,9 +47,9 @@ class PlannerEntry(NamedTuple):
 PLANNERS = (
     PlannerEntry(
         'auto',
-        f'{_PLANNERS}.hit_and_run_connect',
-        'HitAndRunConnect',
-        'the best of them for any request: hit_and_run_connect',
+        f'{_PLANNERS}.auto',
+        'Auto',
+        'hit_and_run_connect, and on a grid a flood fill where that takes long: for any request',
     ),
     PlannerEntry(
         'hit_and_run',

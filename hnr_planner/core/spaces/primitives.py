@@ -93,6 +93,18 @@ def segment_is_free(space: Any, a: Any, b: Any) -> bool:
     return not u.any() or first_exit(space, a, u, 0.0, 1.0) > 1.0
 
 
+@dispatched
+@kernel
+def flood_path(space: Any, start: Any, goal: Any, goal_radius: float, margin: float) -> Any:
+    """
+    Return a free path (m, dim) from ``start`` into the goal region, wherever there is one.
+
+    It may be long. It ends at ``goal`` for a ``goal_radius`` of 0, else at a point ``margin`` or
+    more inside the space. (0, dim) where there is none, or the space does not know.
+    """
+    return np.empty((0, len(start)))
+
+
 def kind_of(space: Any) -> tuple[Any, ...]:
     """Return what compiled code is made for: the type of a compiled space and of its parts."""
     return (type(space), *(kind_of(part) for part in space if contains.knows(part)))

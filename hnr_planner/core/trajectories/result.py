@@ -17,8 +17,12 @@ class TrajectoryResult(SearchResult):
     Attributes
     ----------
     trajectory : Trajectory or None
-        What the system does over time.
+        Times, states and controls; None when none was found.
 
     """
 
     trajectory: Trajectory | None = None
+
+    def __repr__(self) -> str:
+        """Return what results have in common, and the trajectory, without the arrays."""
+        return f'{super().__repr__()[:-1]}, trajectory={self.trajectory!r})'

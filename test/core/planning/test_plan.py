@@ -17,6 +17,8 @@ BLOCKED = maps.rooms(60, 80, 10, seed=4)
 SPACE = GridSpace.from_blocked(BLOCKED, 0.1)
 START, GOAL = SPACE.cell_centres(2, 2), SPACE.cell_centres(57, 75)
 
+#: Success must not depend on how fast the machine is.
+UNLIMITED = {'time_limit': math.inf}
 NARROW = spiral(0.4)
 HARD = GridSpace.from_blocked(NARROW.blocked, NARROW.resolution)
 
@@ -106,12 +108,36 @@ def test_more_searches_never_give_a_longer_path():
     assert path_collisions(often.path, BLOCKED, 0.1) == []
 
 
-def test_improving_for_a_time_ends_with_the_time_and_says_so():
+def test_optimizing_for_a_time_is_bounded_by_a_count_of_searches():
+    """The clock has no part in it where it does not cut: the same seed, the same path."""
+    once, *often = (
+        plan(SPACE, START, GOAL, seed=4, optimize_for=t, **UNLIMITED) for t in (0, 5, 5)
+    )
+    assert often[0].length < once.length
+    assert not often[0].cut_by_time
+    np.testing.assert_array_equal(often[0].path, often[1].path)
+    assert often[0].iterations == often[1].iterations
+
+
+def test_the_clock_cuts_what_is_optimized_for_a_time():
     began = time.perf_counter()
-    result = plan(SPACE, START, GOAL, seed=4, optimize_for=0.2)
-    assert 0.2 <= time.perf_counter() - began < 5.0
+    request = {'seed': 4, 'optimize_for': 0.2, 'optimize_iterations': 10**9}
+    result = plan(SPACE, START, GOAL, **request, **UNLIMITED)
+    assert 0.2 <= time.perf_counter() - began < 30.0
     assert result.status is PlannerStatus.SOLVED
     assert result.cut_by_time
+
+
+def test_optimizing_ends_where_nothing_is_gained():
+    """Two rooms and a door: after a few searches there is nothing to be had."""
+    blocked = np.zeros((20, 40), dtype=bool)
+    blocked[:, 20] = True
+    blocked[10, 20] = False
+    space = GridSpace.from_blocked(blocked)
+    few, many = (
+        plan(space, (5.0, 3.0), (35.0, 3.0), seed=1, optimize_for=t, **UNLIMITED) for t in (1, 100)
+    )
+    assert few.iterations == many.iterations
 
 
 def test_inputs_are_not_changed():
@@ -285,7 +311,8 @@ def test_a_call_that_was_cut_says_so_and_no_other_does():
     chain = {'algorithm': 'hit_and_run', 'seed': 3, 'time_limit': 30.0}
     assert not plan(SPACE, START, GOAL, **chain).cut_by_time
     assert not plan(SPACE, START, START + 0.01, time_limit=0.0).cut_by_time
-    assert plan(SPACE, START, GOAL, seed=3, optimize_for=0.05).cut_by_time
+    endless = {'optimize_for': 0.05, 'optimize_iterations': 10**9}
+    assert plan(SPACE, START, GOAL, seed=3, **endless).cut_by_time
     cancelled = threading.Event()
     cancelled.set()
     assert plan(SPACE, START, GOAL, cancel=cancelled, **chain).cut_by_time

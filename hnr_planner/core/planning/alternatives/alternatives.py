@@ -8,7 +8,6 @@ paths of different homology classes are found, and each is shortened within its 
 
 from dataclasses import replace
 from itertools import pairwise
-import math
 
 from hnr_planner.core.checks import check_count, Floats
 from hnr_planner.core.errors import RequestError
@@ -24,10 +23,10 @@ from hnr_planner.core.planning.alternatives.class_graph import (
     shortest_classes,
     START,
 )
-from hnr_planner.core.planning.homology import islands_at, NO_ISLANDS, signature
+from hnr_planner.core.planning.homology import islands_at, signature
 from hnr_planner.core.planning.limits import Budget, run
-from hnr_planner.core.planning.planner import compile_search, Work
-from hnr_planner.core.planning.planners.hit_and_run_connect import HitAndRunConnect
+from hnr_planner.core.planning.planner import Work
+from hnr_planner.core.planning.planners.auto import Auto
 from hnr_planner.core.planning.planners.rrt import draw_in_box
 from hnr_planner.core.planning.postprocessing.clearance import increase_clearance
 from hnr_planner.core.planning.postprocessing.simplify import shorten, skip_vertices
@@ -134,7 +133,7 @@ def _explore(request: Request, path: Floats, budget: Budget) -> tuple[ClassGraph
         for half, (a, b) in enumerate(pairwise((ends[0], via, ends[1]))):
             problem = request.problem._replace(start=a, goal=b, goal_radius=0.0)
             rng = request.stream(number, EXPLORE, 2, half)
-            search = HitAndRunConnect().start(problem, rng)
+            search = Auto().start(problem, rng)
             if run(search, budget) is PlannerStatus.SOLVED:
                 halves.append(skip_vertices(request.space, search.path, budget)[0])
             work = work.plus(Work.of(search))
@@ -172,14 +171,3 @@ def _draw_points(problem, rng, points):
         if component(problem.space, points[n_points]) == component_of_start:
             n_points += 1
     return n_points
-
-
-def compile_alternatives(request: Request) -> None:
-    """Compile what ``with_alternatives`` runs on this kind of space."""
-    ends = np.stack([request.problem.start, request.problem.start])
-    graph = _linked(request, [ends], ends[:0], Budget(math.inf))
-    shortest_classes(graph, NO_ISLANDS, 1)
-    signature(NO_ISLANDS, ends)
-    is_simple(ends)
-    _draw_points(request.problem, request.stream(0), ends[:0])
-    compile_search(HitAndRunConnect(), request.problem)

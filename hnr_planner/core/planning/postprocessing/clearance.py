@@ -231,12 +231,3 @@ def drop(space, islands, cost, points):
         kept[n_kept] = points[k]
         n_kept += 1
     return kept[:n_kept]
-
-
-def compile_clearance(space: Space, ends: Floats, clearance: float) -> None:
-    """Compile what ``increase_clearance`` runs on this kind of space."""
-    cost = clearance_cost(space, clearance)
-    points = spread(cost, ends)
-    costs = segment_costs(cost, points)
-    move(space.data, NO_ISLANDS, cost, points, costs, np.zeros(len(points)))
-    drop(space.data, NO_ISLANDS, cost, points)

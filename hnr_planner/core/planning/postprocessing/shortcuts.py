@@ -1,9 +1,13 @@
 """
 Kernels that shorten a path by visibility: each only ever shortens, and counts its tests.
 
-``skip``: a vertex is followed by the last one visible from it. ``join``: random points of the path
-are joined. ``pull``: each vertex slides along its two segments until an obstacle is in the way,
-and the corner left there is cut off, so that the path comes to lie taut around obstacles.
+``relax``: the shortest path over some of the vertices, in their order. ``skip``: a vertex is
+followed by the last one visible from it. ``join``: random points of the path are joined. ``pull``:
+each vertex slides along its two segments until an obstacle is in the way, and the corner left
+there is cut off, so that the path comes to lie taut around obstacles.
+
+Every segment of the result was tested as it is, from its first point to its last: in a space that
+samples its segments a part of a free segment need not be free.
 
 With ``islands`` the path stays in its homology class: no segment is replaced by one that passes an
 island on the other side.
@@ -21,8 +25,38 @@ import numpy as np
 TESTS_PER_VERTEX_MAX = 64
 #: Halvings of the segment on which a vertex slides or its corner is cut.
 HALVINGS = 12
+#: Tests of one vertex that slides twice and is cut: the segments along the way, and the results.
+TESTS_OF_A_PULL = 1 + 3 * HALVINGS + 7
 #: Least gain for which a corner is cut, as a fraction of its two segments.
 LEAST_CUT = 1e-3
+
+
+@kernel
+def relax(space, islands, points, to_end, following, i, tests_max):
+    """
+    Extend the shortest paths over vertices, in their order, from the end back to vertex ``i``.
+
+    ``to_end`` (m,) is the length of the shortest path from each vertex to the last one, and
+    ``following`` (m,) the vertex after it on that path; both are known for the vertices behind
+    ``i``. Returns (vertex to go on with, -1 when all are done; tests).
+    """
+    space, islands, points = borrowed(space), borrowed(islands), borrowed(points)
+    tests = 0
+    while i >= 0 and tests < tests_max:
+        lengths = np.empty(len(points) - 1 - i)
+        for k in range(len(lengths)):
+            j = i + 1 + k
+            lengths[k] = norm(points[j] - points[i]) + to_end[j]
+        # The next vertex is known to be visible.
+        to_end[i], following[i] = lengths[0], i + 1
+        for k in np.argsort(lengths, kind='mergesort'):
+            if lengths[k] >= to_end[i] or tests == tests_max:
+                break
+            tests += 1
+            if _may_join(space, islands, points, i, i + 1 + k):
+                to_end[i], following[i] = lengths[k], i + 1 + k
+        i -= 1
+    return i, tests
 
 
 @kernel
@@ -74,15 +108,22 @@ def pull(space, islands, points, k, margin, tests_max):
     """Slide and cut the vertices from ``k`` on; return (path, vertex to go on from, tests)."""
     space, islands = borrowed(space), borrowed(islands)
     tests = 0
-    while k < len(points) - 1 and tests + 1 + 3 * HALVINGS <= tests_max:
+    while k < len(points) - 1 and tests + TESTS_OF_A_PULL <= tests_max:
         if _may_join(space, islands, points, k - 1, k + 1):
             points = _replaced(points, k, points[:0])
             tests += 1
             continue
-        _slide(space, islands, points[k - 1], points[k], points[k + 1], margin)
-        _slide(space, islands, points[k + 1], points[k], points[k - 1], margin)
-        corner = _cut(space, islands, points[k - 1], points[k], points[k + 1], margin)
-        tests += 1 + 3 * HALVINGS
+        before, x, after = points[k - 1], points[k], points[k + 1]
+        for ahead in (False, True):
+            kept = x.copy()
+            if ahead:
+                _slide(space, islands, after, x, before, margin)
+            else:
+                _slide(space, islands, before, x, after, margin)
+            if not (segment_is_free(space, before, x) and segment_is_free(space, x, after)):
+                x[:] = kept
+        corner = _cut(space, islands, before, x, after, margin)
+        tests += TESTS_OF_A_PULL
         points = _replaced(points, k, corner)
         k += len(corner)
     return points, k, tests
@@ -123,7 +164,12 @@ def _cut(space, islands, a, x, b, margin):
     free = max(free - margin / around, 0.0)
     corner[0], corner[1] = x + free * (a - x), x + free * (b - x)
     gain = free * around - norm(corner[1] - corner[0])
-    if gain > LEAST_CUT * around:
+    if (
+        gain > LEAST_CUT * around
+        and segment_is_free(space, a, corner[0])
+        and segment_is_free(space, corner[0], corner[1])
+        and segment_is_free(space, corner[1], b)
+    ):
         return corner
     corner[0] = x
     return corner[:1]

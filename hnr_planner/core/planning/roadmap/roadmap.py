@@ -16,9 +16,9 @@ from hnr_planner.core.checks import check_seed, Floats
 from hnr_planner.core.errors import RequestError
 from hnr_planner.core.kernels.borrowed import borrowed
 from hnr_planner.core.kernels.kernel import kernel
-from hnr_planner.core.kernels.streams import Stream, stream
-from hnr_planner.core.planning.planner import compile_search, make_problem, PathSearch, Problem
-from hnr_planner.core.planning.planners.hit_and_run_connect import HitAndRunConnect
+from hnr_planner.core.kernels.streams import Stream
+from hnr_planner.core.planning.planner import PathSearch, Problem
+from hnr_planner.core.planning.planners.auto import Auto
 from hnr_planner.core.planning.roadmap.build import build_data, N_DRAWS
 from hnr_planner.core.planning.roadmap.data import empty_roadmap, RoadmapData
 from hnr_planner.core.planning.roadmap.exits import visible_nodes, walk_to_node
@@ -78,7 +78,6 @@ class Roadmap:
         """
         _check_plane(space)
         seed = check_seed(seed)
-        _compile(space)
         return cls(seed, build_data(empty_roadmap(space), space, N_DRAWS, seed, cancel))
 
     def update(self, space: Space, *, cancel: Event | None = None) -> 'Roadmap':
@@ -138,7 +137,7 @@ class Roadmap:
             ahead, back = (walk_to_node(space, nodes, exits, end[0], rng) for end in ends)
             path = shortest_path(space, nodes, paths, exits, ahead, back)
             taut = False
-        return SolvedSearch(path, taut) if len(path) else HitAndRunConnect().start(problem, rng)
+        return SolvedSearch(path, taut) if len(path) else Auto().start(problem, rng)
 
 
 @dataclass
@@ -185,17 +184,6 @@ def _check_plane(space: Space) -> None:
             f'a roadmap is of the corners of a plane: space must have dimension 2, this '
             f'{type(space).__name__} has {space.dim}'
         )
-
-
-def _compile(space: Space) -> None:
-    """Compile what requests on this kind of space may run, before one of them waits for it."""
-    (lower, upper), rng = space.kernel_bounds, stream(0)
-    nothing = empty_roadmap(space)
-    for_nodes = nothing.nodes, nothing.shortest_paths, nothing.exits
-    shortest_path(space.data, *for_nodes, lower[np.newaxis], upper[np.newaxis])
-    walk_to_node(space.data, nothing.nodes, nothing.exits, lower, rng)
-    start, goal = space.bounds
-    compile_search(HitAndRunConnect(), make_problem(space, start, goal, goal_radius=0.0))
 
 
 def _same_frame(a: Space, b: Space) -> bool:

@@ -8,6 +8,7 @@ from typing import Literal
 from hnr_planner.core.checks import check_point, check_points, check_real, Floats
 from hnr_planner.core.errors import RequestError, SpaceError
 from hnr_planner.core.spaces.clearance import path_clearance, point_clearance
+from hnr_planner.core.spaces.grid import flood  # noqa: F401  # registers its kernel
 from hnr_planner.core.spaces.grid.cells import Bools, read_blocked, read_occupancy
 from hnr_planner.core.spaces.grid.components import island_points, nearest_in_part
 from hnr_planner.core.spaces.grid.fields import components, free_distance, inflate
