@@ -10,7 +10,7 @@ from concurrent.futures import ThreadPoolExecutor
 import math
 from typing import NamedTuple
 
-from hnr_planner.core.cancellation import Event, in_parts
+from hnr_planner.core.cancellation import Event, in_chunks
 from hnr_planner.core.checks import check_count, check_seed, Floats
 from hnr_planner.core.errors import SpaceError
 from hnr_planner.core.kernels.streams import Stream, stream, uniform
@@ -119,7 +119,7 @@ def sample_free_space(
             points[chain, first] = x = point_in_cell(cells[first], labels.shape, rng)
             part = new_chain(space, x, rng)
             moved = np.empty((len(draws) - 1, space.dim))
-            for some in in_parts(len(moved), cancel, max(1, STEPS_AT_ONCE // thin)):
+            for some in in_chunks(len(moved), cancel, max(1, STEPS_AT_ONCE // thin)):
                 run_chain(space, step, part, thin, moved[some])
             points[chain, draws[1:]] = moved
 
