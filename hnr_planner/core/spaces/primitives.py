@@ -121,8 +121,8 @@ def segment_is_free(space: CompiledSpace, a: Floats, b: Floats) -> bool:
 @dispatched
 @kernel
 def flood_path(
-    space: CompiledSpace, start: Any, goal: Any, goal_radius: float, margin: float
-) -> Any:
+    space: CompiledSpace, start: Floats, goal: Floats, goal_radius: float, margin: float
+) -> Floats:
     """
     Return a free path (m, dim) from ``start`` into the goal region, wherever there is one.
 

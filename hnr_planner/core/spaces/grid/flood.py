@@ -4,17 +4,14 @@ import math
 
 from hnr_planner.core.kernels.borrowed import borrowed
 from hnr_planner.core.kernels.kernel import kernel
-from hnr_planner.core.spaces.grid.traversal import GridData
-from hnr_planner.core.spaces.primitives import flood_path
 import numpy as np
 
 #: Steps to the cells that share an edge, (rows, columns).
 STEPS = ((0, 1), (1, 0), (0, -1), (-1, 0))
 
 
-@flood_path.register(GridData)
 @kernel
-def _flood_path(grid, start, goal, goal_radius, margin):
+def flood_path_in_grid(grid, start, goal, goal_radius, margin):
     """Flood the free cells from the start's, breadth first, until one reaches the goal."""
     grid = borrowed(grid)
     free_distance = grid.free_distance

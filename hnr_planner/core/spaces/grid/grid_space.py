@@ -10,16 +10,16 @@ from hnr_planner.core.errors import RequestError, SpaceError
 from hnr_planner.core.spaces.bounds import in_words
 from hnr_planner.core.spaces.clearance import path_clearance, point_clearance
 from hnr_planner.core.spaces.curves.curve import first_exit_on_curve
-from hnr_planner.core.spaces.grid import flood  # noqa: F401  # registers its kernel
 from hnr_planner.core.spaces.grid.cells import Bools, read_blocked, read_occupancy
 from hnr_planner.core.spaces.grid.components import island_points, nearest_in_component
 from hnr_planner.core.spaces.grid.curves import first_exit_from_grid
 from hnr_planner.core.spaces.grid.fields import components, free_distance, inflate
+from hnr_planner.core.spaces.grid.flood import flood_path_in_grid
 from hnr_planner.core.spaces.grid.frame import decimal, GridFrame
 from hnr_planner.core.spaces.grid.lattice import build_lattice, Lattice, rough_path
 from hnr_planner.core.spaces.grid.slabs import build_slabs, Slabs
 from hnr_planner.core.spaces.grid.traversal import GridData
-from hnr_planner.core.spaces.primitives import component
+from hnr_planner.core.spaces.primitives import component, flood_path
 from hnr_planner.core.spaces.space import Space
 from hnr_planner.core.spaces.transformed import TransformedData
 import numpy as np
@@ -32,6 +32,7 @@ COSTMAP_INFLATED = 99
 TYPICAL_CELLS = 10_000
 
 first_exit_on_curve.register(GridData)(first_exit_from_grid)
+flood_path.register(GridData)(flood_path_in_grid)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
