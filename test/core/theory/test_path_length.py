@@ -19,9 +19,7 @@ from hnr_planner.core.theory import (
 import numpy as np
 import pytest
 
-PROBLEMS = pytest.mark.parametrize(
-    'problem', [AROUND_THE_U, THROUGH_THE_DOOR], ids=['U', 'rooms']
-)
+PROBLEMS = pytest.mark.parametrize('problem', [AROUND_THE_U, THROUGH_THE_DOOR], ids=['U', 'rooms'])
 
 
 @PROBLEMS
