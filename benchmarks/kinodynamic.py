@@ -14,7 +14,7 @@ from benchmarks.ompl.driver import MissingOmpl
 from benchmarks.problems import Floats, Problem
 from benchmarks.progress import show
 from benchmarks.sections import Bench, milliseconds, on_all, Section, table
-from hnr_planner.core import GridSpace, plan
+from hnr_planner.core import GridSpace, plan_trajectory
 from hnr_planner.core.systems import DoubleIntegrator
 from hnr_planner.maps import serpentine
 import numpy as np
@@ -140,11 +140,11 @@ def _measure(course: Problem, session: ControlSession, quick: bool) -> Row:
 
 def _ours(course: Problem, request: Floats, seed: int, **settings: float) -> Run:
     start, goal = np.append(request[0], (0.0, 0.0)), request[1]
-    result = plan(
+    result = plan_trajectory(
         course.space,
+        SYSTEM,
         start,
         goal,
-        system=SYSTEM,
         goal_radius=RADIUS,
         seed=seed,
         time_limit=LIMIT,

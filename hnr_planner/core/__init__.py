@@ -9,7 +9,9 @@ The algorithms, free of ROS: spaces, walks on them, and planners.
 from hnr_planner.core.errors import Cancelled, HnrError, RequestError, SpaceError, StuckError
 from hnr_planner.core.planning.plan import plan
 from hnr_planner.core.planning.planners.hit_and_run import HitAndRun
+from hnr_planner.core.planning.planners.hit_and_run_connect import HitAndRunConnect
 from hnr_planner.core.planning.planners.rrt import RRT
+from hnr_planner.core.planning.planners.rrt_connect import RRTConnect
 from hnr_planner.core.planning.postprocessing.simplify import simplify
 from hnr_planner.core.planning.registry import ALGORITHMS
 from hnr_planner.core.planning.result import FirstSolution, PlannerStatus, PlanResult
@@ -46,10 +48,12 @@ from hnr_planner.core.spaces import (
     Space,
     UnionSpace,
 )
+from hnr_planner.core.trajectories.plan_trajectory import plan_trajectory
 from hnr_planner.core.trajectories.registry import (
     KINODYNAMIC_ALGORITHMS,
     KINODYNAMIC_PLANNERS,
 )
+from hnr_planner.core.trajectories.result import TrajectoryResult
 from hnr_planner.core.warm_up import warm_up
 
 __all__ = [
@@ -71,6 +75,7 @@ __all__ = [
     'FreeSpaceDraws',
     'GridSpace',
     'HitAndRun',
+    'HitAndRunConnect',
     'HitAndRunWalk',
     'HnrError',
     'OracleError',
@@ -80,6 +85,7 @@ __all__ = [
     'PolygonSpace',
     'PolytopeSpace',
     'ProductSpace',
+    'RRTConnect',
     'RequestError',
     'Roadmap',
     'ShearedSpace',
@@ -87,10 +93,12 @@ __all__ = [
     'SpaceError',
     'StuckError',
     'TotalVariation',
+    'TrajectoryResult',
     'UnionSpace',
     'begin_chains',
     'diagnose',
     'plan',
+    'plan_trajectory',
     'relaxation_time',
     'sample',
     'sample_free_space',

@@ -1,11 +1,11 @@
-"""Long work in parts, between which a cancellation is looked at."""
+"""Long work in chunks, between which a cancellation is checked."""
 
 from collections.abc import Iterator
 from typing import Protocol
 
 from hnr_planner.core.errors import Cancelled
 
-#: Rows that are handled between two looks at a cancellation.
+#: Rows that are handled between two checks of a cancellation.
 ROWS = 64
 
 
@@ -13,11 +13,11 @@ class Event(Protocol):
     """Something that can be set from another thread, as ``threading.Event``."""
 
     def is_set(self) -> bool:
-        """Say whether it was set."""
+        """Return whether it was set."""
 
 
-def in_parts(n_rows: int, cancel: Event | None, rows: int = ROWS) -> Iterator[slice]:
-    """Yield slices of so many rows; before each, raise Cancelled if ``cancel`` was set."""
+def in_chunks(n_rows: int, cancel: Event | None, rows: int = ROWS) -> Iterator[slice]:
+    """Yield slices of ``rows`` rows; before each, raise Cancelled if ``cancel`` was set."""
     for first in range(0, n_rows, rows):
         if cancel is not None and cancel.is_set():
             raise Cancelled('the work was cancelled before it was done')

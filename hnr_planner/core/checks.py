@@ -3,7 +3,7 @@
 import math
 import operator
 import secrets
-from typing import Any
+from typing import Any, TypeAlias
 
 from hnr_planner.core.errors import HnrError, RequestError
 import numpy as np
@@ -13,6 +13,10 @@ Floats = NDArray[np.float64]
 #: What ``check_seed`` accepts.
 Seed = int | np.random.SeedSequence | np.random.Generator | np.random.BitGenerator | None
 
+#: What is taken as a seed: ``check_seed`` makes a whole number of it.
+Seed: TypeAlias = (
+    int | np.integer[Any] | np.random.SeedSequence | np.random.Generator | np.random.BitGenerator
+) | None
 #: Seeds drawn from a generator or a seed sequence are below this.
 SEED_MAX = 2**63
 

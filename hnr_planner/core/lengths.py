@@ -7,7 +7,7 @@ from hnr_planner.core.kernels.kernel import kernel
 
 @kernel
 def norm(u):
-    """Length of a vector (dim,)."""
+    """Return the length of a vector (dim,)."""
     squared = 0.0
     for i in range(len(u)):
         squared += u[i] * u[i]
@@ -16,7 +16,7 @@ def norm(u):
 
 @kernel
 def distance(a, b):
-    """Distance between two points (dim,)."""
+    """Return the distance between two points (dim,)."""
     squared = 0.0
     for i in range(len(a)):
         squared += (b[i] - a[i]) ** 2
@@ -25,7 +25,7 @@ def distance(a, b):
 
 @kernel
 def path_length(path):
-    """Length of a path (m, dim)."""
+    """Return the length of a path (m, dim)."""
     total = 0.0
     for k in range(1, len(path)):
         total += distance(path[k - 1], path[k])

@@ -1,9 +1,9 @@
-"""Trees in tables: each row has the row of its parent, and a root has none."""
+"""Trees in tables: each row holds the row of its parent; a root has none."""
 
 from hnr_planner.core.kernels.kernel import kernel
 import numpy as np
 
-#: No row: the parent of a root, or a tree that is not there.
+#: Stands for no row: the parent of a root, or a tree that does not exist.
 NONE = -1
 
 

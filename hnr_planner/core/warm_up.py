@@ -15,13 +15,20 @@ from hnr_planner.core.kernels.compilation import prepare
 from hnr_planner.core.kernels.compiler import needs_of
 from hnr_planner.core.kernels.modes import Mode, mode_of_thread
 from hnr_planner.core.kernels.needs import Workload
+from hnr_planner.core.planning.limits import Budget
 from hnr_planner.core.planning.plan import plan
+from hnr_planner.core.planning.planner import make_problem
+from hnr_planner.core.planning.planners.auto import flood
 from hnr_planner.core.planning.registry import ALGORITHMS
 from hnr_planner.core.sampling.sample import sample
 from hnr_planner.core.sampling.walks import WALKS
 from hnr_planner.core.spaces.grid.grid_space import GridSpace
 from hnr_planner.core.systems import DoubleIntegrator
+from hnr_planner.core.trajectories.plan_trajectory import plan_trajectory
+from hnr_planner.core.trajectories.problem import Motion
+from hnr_planner.core.trajectories.reduce import reduce
 from hnr_planner.core.trajectories.registry import KINODYNAMIC_PLANNERS
+from hnr_planner.core.trajectories.request import check_kinodynamic_request
 import numpy as np
 
 START, GOAL = (0.5, 0.5), (2.5, 2.5)
@@ -108,39 +115,74 @@ def compile_all(*uses: str, progress: Progress | None = None) -> int:
 
 def find_paths() -> None:
     """Plan by every algorithm, with every option that needs kernels of its own."""
-    space = _small_grid()
+    space, winding = _grid_with_island(), _winding_grid()
     for algorithm in ALGORITHMS:
-        plan(
-            space,
-            START,
-            GOAL,
-            algorithm=algorithm,
-            seed=0,
-            optimize_iterations=1,
-            time_limit=math.inf,
-            max_iterations=N_ITERATIONS,
-        )
+        for grid in (space, winding):
+            plan(
+                grid,
+                START,
+                GOAL,
+                algorithm=algorithm,
+                seed=0,
+                optimize_iterations=1,
+                time_limit=math.inf,
+                max_iterations=N_ITERATIONS,
+            )
     plan(space, START, GOAL, seed=0, alternatives=2, clearance=1.0, time_limit=math.inf)
+    flood(make_problem(space, np.array(START), np.array(GOAL), 0.0))
     space.nearest_reachable(START, GOAL, 1.0)
     space.clearance(START)
     space.path_clearance([START, GOAL])
 
 
 def find_motions() -> None:
-    """Plan for a system by every algorithm."""
-    space, system = _small_grid(), DoubleIntegrator()
+    """Plan for a system by every algorithm, and what only fast starts and long motions need."""
+    space, system, start = _small_grid(), DoubleIntegrator(), (*START, 0.0, 0.0)
     for algorithm in KINODYNAMIC_PLANNERS:
-        plan(
+        plan_trajectory(
             space,
-            (*START, 0.0, 0.0),
+            system,
+            start,
             GOAL,
-            system=system,
             algorithm=algorithm,
             goal_radius=1.0,
             seed=0,
             time_limit=math.inf,
             max_iterations=N_ITERATIONS,
         )
+    wall = np.zeros((3, 3), dtype=bool)
+    wall[0, 2] = True
+    towards_wall = (*START, 1.9, 0.0)
+    plan_trajectory(
+        GridSpace.from_blocked(wall),
+        DoubleIntegrator(max_speed=2.0),
+        towards_wall,
+        GOAL,
+        seed=0,
+        time_limit=math.inf,
+        max_iterations=N_ITERATIONS,
+    )
+    _reduce_motion(space, system, start)
+
+
+def _reduce_motion(space: GridSpace, system: DoubleIntegrator, start: tuple[float, ...]) -> None:
+    """Reduce a motion of one step: there is nothing to do, but it needs the same kernel."""
+    request = check_kinodynamic_request(
+        space,
+        system,
+        start,
+        GOAL,
+        algorithm='auto',
+        settings={},
+        goal_radius=1.0,
+        goal_speed=math.inf,
+        boundary='forbidden',
+        simplify=None,
+        seed=0,
+    )
+    at_rest = np.stack([request.problem.start] * 2)
+    motion = Motion(np.ones(1), at_rest, np.zeros((1, system.control_dim)))
+    reduce(request.problem, motion, request.geometric.stream(0), Budget(math.inf))
 
 
 def draw_samples() -> None:
@@ -153,6 +195,21 @@ def draw_samples() -> None:
 
 def _small_grid() -> GridSpace:
     return GridSpace.from_blocked(np.zeros((3, 3), dtype=bool))
+
+
+def _grid_with_island() -> GridSpace:
+    """Return a room with an obstacle between start and goal: paths have to be shortened."""
+    blocked = np.zeros((12, 12), dtype=bool)
+    blocked[4:8, 4:8] = True
+    return GridSpace.from_blocked(blocked, 0.25)
+
+
+def _winding_grid() -> GridSpace:
+    """Return a winding corridor, in which searches need more than a first batch of steps."""
+    blocked = np.zeros((15, 15), dtype=bool)
+    blocked[1::2] = True
+    blocked[1::4, -1] = blocked[3::4, 0] = False
+    return GridSpace.from_blocked(blocked, 0.2)
 
 
 #: The workload of each use.

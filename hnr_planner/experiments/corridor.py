@@ -10,7 +10,7 @@ from functools import cache
 import math
 from typing import Any, NamedTuple
 
-from hnr_planner.core import GridSpace, plan, PlanResult
+from hnr_planner.core import GridSpace, plan_trajectory, TrajectoryResult
 from hnr_planner.core.systems import DoubleIntegrator
 from hnr_planner.experiments.experiment import Experiment
 from hnr_planner.experiments.figures import draw_profile, legend, LOOKS, new_figure, style
@@ -68,16 +68,17 @@ def run(case: Case, seed: int) -> dict[str, float]:
     }
 
 
-def search(case: Case, seed: int) -> PlanResult:
+def search(case: Case, seed: int) -> TrajectoryResult:
     """Search once from rest, without time limit and without shortening."""
     made, space = built(case.shape, case.width)
-    return plan(
+    return plan_trajectory(
         space,
+        ROBOT,
         (*made.start, 0.0, 0.0),
         made.goal,
-        system=ROBOT,
         algorithm=ALGORITHMS[case.algorithm],
         goal_radius=made.goal_radius,
+        boundary='inelastic',
         transition=case.transition,
         time_step=TIME_STEP,
         seed=seed,

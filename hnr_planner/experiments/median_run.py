@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from hnr_planner.core import PlanResult
+from hnr_planner.core.planning.result import SearchResult
 from hnr_planner.drawing import draw_ends, draw_map, draw_sample_cells, draw_title, FAINT_INK, GOAL
 from hnr_planner.experiments.results import Results
 from hnr_planner.maps import Corridor
@@ -18,15 +18,15 @@ DOT = 0.05
 
 
 def median_run(
-    results: Results, case: Any, search: Callable[[Any, int], PlanResult]
-) -> PlanResult:
+    results: Results, case: Any, search: Callable[[Any, int], SearchResult]
+) -> SearchResult:
     """Repeat the search of the run with the median number of transitions of a case."""
     runs = results.of(case)
     middle = np.argsort(runs['transitions'], kind='stable')[len(runs) // 2]
     return search(case, int(runs['seed'][middle]))
 
 
-def draw_run(axes: Axes, corridor: Corridor, run: PlanResult, name: str) -> None:
+def draw_run(axes: Axes, corridor: Corridor, run: SearchResult, name: str) -> None:
     """Draw the samples of a run through a corridor, start, goal and the goal's region."""
     draw_map(axes, corridor.occupancy)
     for image in axes.images:

@@ -11,14 +11,16 @@ from dataclasses import dataclass, replace
 import math
 import threading
 import time
+from typing import Any
 
 from hnr_planner.core import (
     HnrError,
     KINODYNAMIC_PLANNERS,
     plan,
+    plan_trajectory,
     PlannerStatus,
-    PlanResult,
 )
+from hnr_planner.core.planning.result import SearchResult
 from hnr_planner.ros.messages.trajectories import as_path
 from hnr_planner.server.escape import escape_point
 from hnr_planner.server.map_store import MapSnapshot
@@ -173,7 +175,7 @@ class _Job:
 
     def _plan_from(
         self, start: tuple[float, float] | np.ndarray, request: PlanRequest, snapshot: MapSnapshot
-    ) -> tuple[PlanResult, str]:
+    ) -> tuple[SearchResult, str]:
         """
         Plan from a point, and say how it went.
 
@@ -188,11 +190,14 @@ class _Job:
             arguments |= self.settings.motion_arguments(request.algorithm)
             begin = np.append(begin, (0.0, 0.0))  # at rest
 
-        def search(end: tuple[float, float] | np.ndarray) -> PlanResult:
+        def search(end: tuple[float, float] | np.ndarray) -> SearchResult:
             left = max(self.deadline - time.monotonic(), SHORTEST_TIME)
+            limits: dict[str, Any] = {'time_limit': left, 'cancel': self.cancel}
             try:
-                result = plan(
-                    snapshot.space, begin, end, time_limit=left, cancel=self.cancel, **arguments
+                if kinodynamic is None:
+                    return plan(snapshot.space, begin, end, **limits, **arguments)
+                result = plan_trajectory(
+                    snapshot.space, start=begin, goal=end, **limits, **arguments
                 )
             except HnrError as error:
                 raise Refusal(Outcome.BAD_REQUEST, str(error)) from error
@@ -217,7 +222,7 @@ class _Job:
         return result, f'{result.message}; the goal was moved by {offset:.4g} m because {why}'
 
 
-def _led_out(result: PlanResult, start: tuple[float, float], escape: float) -> PlanResult:
+def _led_out(result: SearchResult, start: tuple[float, float], escape: float) -> SearchResult:
     """Return a result whose path, if any, begins with the way out of `start`."""
     if result.status is not PlannerStatus.SOLVED:
         return result

@@ -4,7 +4,8 @@ from abc import ABC, abstractmethod
 from dataclasses import dataclass, field
 import math
 
-from hnr_planner.core import FreeSpaceDraws, PlanResult
+from hnr_planner.core import FreeSpaceDraws
+from hnr_planner.core.planning.result import SearchResult
 from hnr_planner.ros.messages.orientations import LEVEL, normalised, Quaternion
 from hnr_planner.server.map_store import MapSnapshot
 from hnr_planner.server.outcomes import Outcome
@@ -68,7 +69,7 @@ class PlanResponse(Response):
     ----------
     request : Request
         What was asked for; in the map's frame once something was planned.
-    result : PlanResult, optional
+    result : SearchResult, optional
         What the planner returned; None when nothing was planned.
     clearance : float
         Smallest distance between the path and an obstacle [m]; NaN without a path.
@@ -81,7 +82,7 @@ class PlanResponse(Response):
     """
 
     request: PlanRequest
-    result: PlanResult | None = None
+    result: SearchResult | None = None
     clearance: float = math.nan
     escape: float = 0.0
     blocked: PlanarPose | None = None
@@ -137,7 +138,7 @@ class PlanResponse(Response):
             values |= {f'blocked_{part}': f'{n:.6g}' for part, n in self.blocked._asdict().items()}
         result = self.result
         if result is not None:
-            first_elapsed, first_length = result.first_solution or (math.nan, math.nan)
+            first_elapsed, first_length = (result.first_solution or (math.nan, math.nan))[:2]
             values |= {
                 'seed': str(result.seed),
                 'iterations': str(result.iterations),

@@ -4,11 +4,11 @@ from collections.abc import Sequence
 from dataclasses import replace
 import itertools
 
-from hnr_planner.core import PlanResult
+from hnr_planner.core.planning.result import SearchResult
 import numpy as np
 
 
-def joined(results: Sequence[PlanResult]) -> PlanResult:
+def joined(results: Sequence[SearchResult]) -> SearchResult:
     """
     Return the results of solved legs as one; each begins where the one before it ended.
 

@@ -172,9 +172,6 @@ SPACES: dict[str, Callable[[], object]] = {
         [[-1.0, 0.0], [0.0, -1.0], [1.0, 2.0]], [-FAR[0], -FAR[1], FAR @ (1, 2) + 0.5]
     ),
     'rooms far away': _far_rooms,
-    'oracle far away': lambda: OracleSpace(
-        lambda x: bool(0.3 < np.hypot(*(x - FAR)) < 1.0), FAR - 1.1, FAR + 1.1, resolution=2e-3
-    ),
     'product': lambda: ProductSpace(
         GridSpace.from_blocked(maps.TWO_ROOMS, 0.1), BallSpace([0.0], 2)
     ),

@@ -4,7 +4,7 @@ The laws of the primitives that composed spaces are made of, held on every compi
 ``first_entry`` is held against points along the line: nothing is free before it, something after.
 """
 
-from test.laws.test_space_laws import random_points, size
+from test.laws.test_space_laws import random_points, rounding, size, tolerance
 
 from hnr_planner.core.kernels.kernel import interpreted, kernel
 from hnr_planner.core.spaces import primitives
@@ -28,8 +28,18 @@ def entering(space, x, u, t):
 
 
 @kernel
-def leaving(space, x, u, t, enough):
-    return primitives.first_exit(space, x, u, t, enough)
+def leaving(space, x, u, t, horizon):
+    return primitives.first_exit(space, x, u, t, horizon)
+
+
+def beyond_rounding(space):
+    """
+    Return a distance along a line after which a point is beyond a boundary in spite of rounding.
+
+    A line may cross a boundary at an angle of 1e-3: for a space far from the origin, points are
+    rounded across it up to 1e3 roundings from the crossing.
+    """
+    return max(tolerance(space), 1e4 * rounding(space))
 
 
 def lines(space, rng):
@@ -49,11 +59,9 @@ def test_the_closure_holds_the_ends_of_chords(space, rng):
         lower, upper = chord_or_empty(space.compiled, point, direction)
         if lower == upper:
             continue
-        ends = (
-            point
-            + np.array([lower - 1e-9, lower + 1e-9, upper - 1e-9, upper + 1e-9])[:, np.newaxis]
-            * direction
-        )
+        step = beyond_rounding(space) / np.linalg.norm(direction)
+        at = np.array([lower - step, lower + step, upper - step, upper + step])
+        ends = point + at[:, np.newaxis] * direction
         assert touching(space.compiled, ends).tolist() == [False, True, True, False]
 
 
@@ -65,7 +73,8 @@ def test_nothing_is_free_before_a_line_enters_and_something_after_it(space, rng)
         before = np.linspace(0.0, min(first, 3.0), ALONG)[:-1, np.newaxis]
         assert first == 0.0 or not space.contains(point + before * direction).any()
         if first < np.inf:
-            assert space.contains(point + (first + 1e-9) * direction)
+            step = beyond_rounding(space) / np.linalg.norm(direction)
+            assert space.contains(point + (first + step) * direction)
         verdicts.add(first if first in (0.0, np.inf) else 'ahead')
     assert verdicts == {0.0, np.inf, 'ahead'}
 

@@ -1,20 +1,19 @@
 """
-Attempts at a request: search, shorten, keep away from walls; again, for a better path.
+Attempts at a request: search, shorten, increase the clearance; again, for a better path.
 
 Each attempt has random streams of its own, so that none depends on how many came before it or on
 how long they took.
 """
 
 from collections.abc import Callable
-import itertools
 import math
-import time
 from typing import NamedTuple, TypeVar
 
 from hnr_planner.core.checks import Floats
+from hnr_planner.core.kernels.clock import working_time
 from hnr_planner.core.lengths import path_length
-from hnr_planner.core.planning.limits import Budget
-from hnr_planner.core.planning.planner import PathSearch, Search
+from hnr_planner.core.planning.limits import Budget, run
+from hnr_planner.core.planning.planner import PathSearch, Search, Work
 from hnr_planner.core.planning.postprocessing.clearance import increase_clearance, path_cost
 from hnr_planner.core.planning.postprocessing.simplify import shorten
 from hnr_planner.core.planning.request import Request
@@ -22,9 +21,13 @@ from hnr_planner.core.planning.result import FirstSolution, PlannerStatus
 import numpy as np
 
 SearchType = TypeVar('SearchType', bound=Search)
-Answer = TypeVar('Answer')
+Found = TypeVar('Found')
 
-#: What random streams are for: to search, to shorten what was found.
+#: Fraction of the cost that a round has to gain to count as one that did.
+LEAST_GAIN = 1e-3
+#: Searches that are begun again because their path was not free in the caller's coordinates.
+RESTARTS_MAX = 100
+#: Purposes of random streams: to search, to shorten what was found.
 SEARCH, SHORTEN = 0, 1
 
 
@@ -41,6 +44,7 @@ class Attempt(NamedTuple):
     cost : float
         What is least for the best path: its length, and more near walls if a clearance was asked.
     first : FirstSolution or None
+        The path as found.
 
     """
 
@@ -54,67 +58,79 @@ class Attempt(NamedTuple):
 def attempt(
     request: Request,
     number: int,
-    limits: Budget,
+    budget: Budget,
     began: float,
-    improving: Budget | None = None,
+    optimizing: Budget | None = None,
 ) -> Attempt:
     """
-    Search once and better what was found.
+    Search once and improve the path that was found.
 
-    With limits for ``improving`` there is a second way, the rough path that the space itself
-    knows: the shorter of the two is bettered first, the other one while these limits allow.
+    With a budget for ``optimizing`` there is a second path, the rough one that the space itself
+    knows: the shorter of the two is improved first, the other one while that budget lasts.
     """
-    status, search, path = _search(request, number, limits)
+    status, search, path = _search(request, number, budget)
     if status is not PlannerStatus.SOLVED:
         return Attempt(status, search, path, math.inf, None)
-    first = FirstSolution(time.perf_counter() - began, path_length(path))
-    if len(path) == 2 or improving is None:
-        return Attempt(status, search, *_bettered(request, number, search, path, limits), first)
+    first = FirstSolution(working_time() - began, path_length(path), path)
+    if len(path) == 2 or optimizing is None:
+        return Attempt(status, search, *_improved(request, number, search, path, budget), first)
     shorter, *longer = sorted([path, *_rough_paths(request)], key=path_length)
-    best = _bettered(request, number, search, shorter, limits)
-    for way in longer:
-        if improving.stop() is None:
-            best = min(best, _bettered(request, number, search, way, improving), key=_cost)
+    best = _improved(request, number, search, shorter, budget)
+    for other in longer:
+        if optimizing.stop() is None:
+            best = min(best, _improved(request, number, search, other, optimizing), key=_cost)
     return Attempt(status, search, *best, first)
 
 
-def _bettered(
-    request: Request, number: int, search: PathSearch, path: Floats, limits: Budget
+def _improved(
+    request: Request, number: int, search: PathSearch, path: Floats, budget: Budget
 ) -> tuple[Floats, float]:
     """Return a path (m, dim) shortened and moved away from walls as was asked, and its cost."""
     if request.simplify and not search.taut and len(path) > 2:
-        path = shorten(request.space, path, request.stream(number, SHORTEN), limits)
-    path = with_clearance(request, path, limits)
+        space, rng, found = request.space, request.stream(number, SHORTEN), path
+        path = budget.within(lambda: shorten(space, found, rng, budget), found)
+    path = with_clearance(request, path, budget)
     return path, path_cost(request.space, path, request.clearance)
 
 
-def _cost(bettered: tuple[Floats, float]) -> float:
-    return bettered[1]
+def _cost(improved: tuple[Floats, float]) -> float:
+    return improved[1]
 
 
-def improve(
-    request: Request, best: Attempt, searches: float, limits: Budget, began: float
-) -> tuple[Attempt, int]:
-    """Look for better paths by searches from fresh seeds: the best, and the transitions of all."""
-    iterations, number = best.search.iterations, 1
-    while number <= searches and len(best.path) > 2 and limits.stop() is None:
-        again = attempt(request, number, limits, began)
-        iterations += again.search.iterations
+def optimize(
+    request: Request,
+    best: Attempt,
+    rounds: float,
+    patience: float,
+    budget: Budget,
+    began: float,
+) -> tuple[Attempt, Work]:
+    """
+    Search for better paths from fresh seeds: return the best, and the work of all searches.
+
+    After ``patience`` rounds in a row that gain hardly anything no more are tried.
+    """
+    work, number, idle = Work.of(best.search), 1, 0
+    while number <= rounds and idle < patience and len(best.path) > 2 and budget.stop() is None:
+        again = attempt(request, number, budget, began)
+        work = work.plus(Work.of(again.search))
         number += 1
+        idle = 0 if again.cost < (1.0 - LEAST_GAIN) * best.cost else idle + 1
         if again.cost < best.cost:
             best = again
-    return best, iterations
+    return best, work
 
 
-def with_clearance(request: Request, path: Floats, limits: Budget) -> Floats:
+def with_clearance(request: Request, path: Floats, budget: Budget) -> Floats:
     """Return a path (m, dim) moved away from walls, where that was asked for."""
     if request.clearance == 0.0:
         return path
-    return increase_clearance(request.space, path, request.clearance, limits)
+    space, clearance = request.space, request.clearance
+    return budget.within(lambda: increase_clearance(space, path, clearance, budget), path)
 
 
 def _search(
-    request: Request, number: int, limits: Budget
+    request: Request, number: int, budget: Budget
 ) -> tuple[PlannerStatus, PathSearch, Floats]:
     """Search for a path (m, dim) that is free in the caller's coordinates."""
 
@@ -125,42 +141,42 @@ def _search(
         path = _in_caller_s_frame(request, search.path)
         return path if request.space.is_path_free(path) else None
 
-    status, search, path = search_until_free(start, free_path, limits)
+    status, search, path = search_until_free(start, free_path, budget)
     return status, search, np.empty((0, request.space.dim)) if path is None else path
 
 
 def search_until_free(
     start: Callable[[int], SearchType],
-    answer_of: Callable[[SearchType], Answer | None],
-    limits: Budget,
-) -> tuple[PlannerStatus, SearchType, Answer | None]:
+    found_by: Callable[[SearchType], Found | None],
+    budget: Budget,
+) -> tuple[PlannerStatus, SearchType, Found | None]:
     """
-    Search until an answer is free in the caller's coordinates, or a limit is met.
+    Search until a path is free in the caller's coordinates, or a limit is met.
 
-    One so close to a corner that those coordinates round it into the obstacle is none: then the
-    search begins again, from another stream.
+    A path so close to a corner that those coordinates round it into the obstacle does not count:
+    then the search begins again, from another stream.
 
     Parameters
     ----------
     start : callable
         Starts the search of a number, 0 for the first.
-    answer_of : callable
-        Returns the answer of a solved search, None when it is not free.
-    limits : Limits
+    found_by : callable
+        Returns what a solved search found, None when that is not free.
+    budget : Budget
         Of all searches together.
 
     """
-    for salt in itertools.count():
+    for salt in range(RESTARTS_MAX):
         search = start(salt)
-        status = limits.run(search)
+        status = run(search, budget)
         if status is PlannerStatus.SOLVED:
-            answer = answer_of(search)
-            if answer is not None:
-                return status, search, answer
-            status = limits.stop() or status
+            found = found_by(search)
+            if found is not None:
+                return status, search, found
+            status = budget.stop() or status
         if status is not PlannerStatus.SOLVED:
-            break
-    return status, search, None
+            return status, search, None
+    return PlannerStatus.ITERATION_LIMIT, search, None
 
 
 def _in_caller_s_frame(request: Request, points: Floats) -> Floats:

@@ -1,5 +1,5 @@
 """
-On which side a path passes every island: homology classes, told apart by signatures.
+Homology classes of paths: on which side a path passes every island, as a signature.
 
 An island is an obstacle with free space all around it. A ray goes straight up from a point in
 each; the signature of a path adds the island's number where the path crosses its ray to the right
@@ -8,7 +8,7 @@ constraints in search-based robot path planning", 2012). Two paths with the same
 signature when the loop that both make winds around no island, and another one when it does: then
 neither can be deformed into the other.
 
-Numbers are random words, added modulo 2^64, so that one word stands for the windings around all
+Numbers are random words, added modulo 2^64, so that one word holds the windings around all
 islands: two classes have the same one with a chance of 2^-64. In the kernel frame, two dimensions.
 Without islands every path has the signature 0, and may pass everything on any side.
 """
@@ -30,7 +30,7 @@ class Islands(NamedTuple):
     x, y : (k,)
         The points.
     numbers : (k,) int64
-        What a crossing of each one's ray counts.
+        Number that is added when the ray of each is crossed.
 
     """
 
@@ -52,7 +52,7 @@ NO_ISLANDS = islands_at(np.empty((0, 2)))
 
 @kernel
 def crossings(islands, a, b):
-    """Signature of the segment a-b."""
+    """Return the signature (int64) of the segment a-b, points (2,)."""
     signature = np.int64(0)
     if len(islands.x) == 0 or a[0] == b[0]:
         return signature
@@ -68,7 +68,7 @@ def crossings(islands, a, b):
 
 @kernel
 def signature(islands, path):
-    """Signature of a path (m, 2)."""
+    """Return the int64 that is the sum over all crossings of a path (m, 2)."""
     total = np.int64(0)
     if len(islands.x) == 0:
         return total
@@ -79,5 +79,5 @@ def signature(islands, path):
 
 @kernel
 def loop_signature(islands, a, x, b):
-    """Signature of the loop a-x-b-a: 0 when the triangle holds no island's point."""
+    """Return the signature of the loop a-x-b-a: 0 when the triangle holds no island's point."""
     return crossings(islands, a, x) + crossings(islands, x, b) + crossings(islands, b, a)

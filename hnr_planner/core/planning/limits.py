@@ -1,12 +1,19 @@
-"""What ends a search that does not end by itself: the clock, a count, or a person."""
+"""Limits on the work for a request: the clock, a count of transitions, a cancellation."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 import math
 import time
+from typing import TypeVar
 
 from hnr_planner.core.cancellation import Event
+from hnr_planner.core.errors import Interrupted
+from hnr_planner.core.kernels.clock import working_time
+from hnr_planner.core.kernels.interruption import interruptible
 from hnr_planner.core.planning.planner import Search
 from hnr_planner.core.planning.result import PlannerStatus
+
+Value = TypeVar('Value')
 
 #: Transitions in the first batch; later ones last about as long as the bounds below [s].
 FIRST_BATCH = 64
@@ -21,7 +28,7 @@ class Budget:
     Attributes
     ----------
     deadline : float
-        End of the time allowed, on the clock of ``time.perf_counter`` [s].
+        End of the time allowed, on the clock of ``working_time`` [s].
     max_iterations : float
         Transitions allowed for one search; may be inf.
     cancel : Event or None
@@ -37,34 +44,50 @@ class Budget:
     cut: bool = field(init=False, default=False)
 
     def stop(self) -> PlannerStatus | None:
-        """Say why work has to stop now; None while it may go on."""
+        """Return the reason why work has to stop now; None while it may go on."""
         stopped = None
         if self.cancel is not None and self.cancel.is_set():
             stopped = PlannerStatus.CANCELLED
-        elif time.perf_counter() >= self.deadline:
+        elif working_time() >= self.deadline:
             stopped = PlannerStatus.TIMEOUT
         self.cut = self.cut or stopped is not None
         return stopped
 
-    def run(self, search: Search) -> PlannerStatus:
-        """
-        Advance a search until it is solved or a limit is met, and say which.
+    def within(self, work: Callable[[], Value], otherwise: Value) -> Value:
+        """Return what ``work`` returns, or ``otherwise`` where a limit interrupts its kernels."""
+        try:
+            with interruptible(lambda: self.stop() is not None):
+                return work()
+        except Interrupted:
+            if self.stop() is None:
+                raise  # by a condition of the caller's own
+            return otherwise
 
-        Between batches the limits are looked at. The size of the batches follows the clock so that
-        this happens about every half a millisecond; it has no effect on what is found.
-        """
-        batch = FIRST_BATCH
-        while not search.solved:
-            stopped = self.stop()
-            if stopped is not None:
-                return stopped
-            left = self.max_iterations - search.iterations
-            if left <= 0:
-                return PlannerStatus.ITERATION_LIMIT
-            began = time.perf_counter()
-            search.advance(int(min(batch, left)))
-            batch = _next_batch(batch, time.perf_counter() - began)
-        return PlannerStatus.SOLVED
+
+def run(search: Search, budget: Budget) -> PlannerStatus:
+    """
+    Advance a search until it is solved or a limit is met, and return which of them it was.
+
+    The limits are checked between batches. The size of the batches follows the clock so that this
+    happens about every half a millisecond; it has no effect on what is found.
+    """
+    status = budget.within(lambda: _advance(search, budget), None)
+    return status or budget.stop() or PlannerStatus.TIMEOUT
+
+
+def _advance(search: Search, budget: Budget) -> PlannerStatus:
+    batch = FIRST_BATCH
+    while not search.solved:
+        stopped = budget.stop()
+        if stopped is not None:
+            return stopped
+        left = budget.max_iterations - search.iterations
+        if left <= 0:
+            return PlannerStatus.ITERATION_LIMIT
+        began = time.perf_counter()
+        search.advance(int(min(batch, left)))
+        batch = _next_batch(batch, time.perf_counter() - began)
+    return PlannerStatus.SOLVED
 
 
 def _next_batch(batch: int, seconds: float) -> int:

@@ -1,41 +1,38 @@
 """
-``plan``: one request, one answer.
+``plan``: find a path for one request.
 
-The planners search and count; ``plan`` alone checks the request, owns the clock, listens for a
-cancellation and says in words how it ended.
+The planners search and count. ``plan`` validates the request, enforces its limits and builds the
+result.
 """
 
-from dataclasses import replace
 import math
-import time
 from typing import Any
 
 from hnr_planner.core.cancellation import Event
-from hnr_planner.core.checks import check_count, check_number
 from hnr_planner.core.errors import RequestError
+from hnr_planner.core.kernels.clock import working_time
 from hnr_planner.core.lengths import path_length
 from hnr_planner.core.planning.alternatives.alternatives import (
     check_alternatives,
-    compile_alternatives,
     with_alternatives,
 )
-from hnr_planner.core.planning.attempts import Attempt, attempt, improve, with_clearance
+from hnr_planner.core.planning.attempts import Attempt, attempt, optimize, with_clearance
+from hnr_planner.core.planning.ends import check_allowance, move_ends
 from hnr_planner.core.planning.limits import Budget
-from hnr_planner.core.planning.planner import compile_search, Planner
-from hnr_planner.core.planning.postprocessing.clearance import compile_clearance
-from hnr_planner.core.planning.postprocessing.simplify import compile_shorten
-from hnr_planner.core.planning.request import check_request, outcome_without_search, Request
-from hnr_planner.core.planning.result import (
-    FirstSolution,
-    PlannerStatus,
-    PlanResult,
+from hnr_planner.core.planning.planner import Planner, Work
+from hnr_planner.core.planning.request import (
+    check_effort,
+    check_request,
+    Effort,
+    Request,
 )
-from hnr_planner.core.spaces.primitives import kind_of
+from hnr_planner.core.planning.result import FirstSolution, PlannerStatus, PlanResult
 from hnr_planner.core.spaces.space import Space
-from hnr_planner.core.systems.system import System
-from hnr_planner.core.trajectories.plan_trajectory import check_kinodynamic_request, plan_motion
 import numpy as np
 from numpy.typing import ArrayLike
+
+#: Arguments of ``plan_trajectory`` that ``plan`` does not have.
+OF_TRAJECTORIES = ('system', 'goal_speed')
 
 
 def plan(
@@ -49,11 +46,12 @@ def plan(
     max_iterations: int | None = None,
     seed: int | None = None,
     simplify: bool = True,
+    clearance: float = 0.0,
     optimize_for: float = 0.0,
     optimize_iterations: int = 0,
     alternatives: int = 1,
-    system: System | None = None,
-    goal_speed: float = math.inf,
+    goal_tolerance: float = 0.0,
+    start_escape: float = 0.0,
     cancel: Event | None = None,
     **settings: Any,
 ) -> PlanResult:
@@ -71,7 +69,7 @@ def plan(
     goal_radius : float
         Above 0 the path ends within this distance [m] of the goal (the paper's goal region): at
         the first sample there, or where a tree that grew from the goal began. At 0 it ends exactly
-        at the goal, as soon as a sample sees it.
+        at the goal, as soon as the segment to it is free.
     time_limit : float
         Seconds for the whole call, inf for no limit. Compilation does not count.
     max_iterations : int, optional
@@ -80,22 +78,31 @@ def plan(
         Fresh when left out; the result names the one used.
     simplify : bool
         Whether the path is shortened by visibility.
+    clearance : float
+        Distance to obstacles [m] that the path keeps where there is room; narrower places are
+        passed in their middle. 0 for the shortest path. It needs ``simplify`` and a space that
+        measures the distance to its walls.
     optimize_for : float
-        For so many seconds of the call, within the time limit, a shorter path is looked for again
-        and again; a straight one ends it.
+        Seconds of the call, within the time limit, in which further searches look for a shorter
+        path; a straight one ends that. The clock only cuts: searches are bounded by their number,
+        in proportion to the seconds, and end sooner when several in a row gain nothing. So the
+        same seed gives the same path on a machine that is fast enough.
     optimize_iterations : int
-        How many more searches to run for a shorter path; together with ``optimize_for`` whichever
-        ends first.
+        Number of further searches for a shorter path; together with ``optimize_for`` whichever
+        ends first, in place of the bound above.
     alternatives : int
         How many paths to look for, none of which can be deformed into another past an obstacle:
         ``PlanResult.paths``, the shortest first. There may be fewer. All have the same ends, also
         in a goal region.
-    system : System, optional
-        What moves, where that is a robot with inertia: then ``start`` is a state of it, the
-        answer has a trajectory, and ``algorithm`` is one of ``KINODYNAMIC_ALGORITHMS``.
-        ``simplify``, ``optimize_for`` and ``optimize_iterations`` shorten its duration.
-    goal_speed : float
-        Largest speed at the goal [m/s], for a system.
+    goal_tolerance : float
+        Where the goal is blocked or cannot be reached, the path ends at the nearest point within
+        this distance [m] that can: ``PlanResult.goal_offset`` and the message state it. A goal
+        that is free and reachable is never moved. It needs a space with ``nearest_reachable``.
+    start_escape : float
+        Where the start is not free because of inflation, or in an unknown cell, the path begins
+        with a straight way out of it of at most this length [m]: ``PlanResult.escape`` and the
+        message state it. It crosses no occupied cell; from inside an obstacle there is none. It
+        needs a ``GridSpace``.
     cancel : threading.Event, optional
         Ends the call once it is set.
     **settings
@@ -112,92 +119,90 @@ def plan(
         When an argument is malformed; the message names the value and the rule.
 
     """
-    seconds = check_number('time_limit', time_limit, 0.0)
-    improve_seconds = check_number('optimize_for', optimize_for, 0.0)
-    improve_searches = check_count('optimize_iterations', optimize_iterations, 0)
-    transitions = (
-        math.inf if max_iterations is None else check_count('max_iterations', max_iterations, 1)
+    _refuse_trajectories(settings)
+    effort = check_effort(
+        time_limit=time_limit,
+        max_iterations=max_iterations,
+        optimize_for=optimize_for,
+        optimize_iterations=optimize_iterations,
+        cancel=cancel,
     )
-    if system is not None:
-        _check_for_system(alternatives)
-        motion = check_kinodynamic_request(
-            space,
-            start,
-            goal,
-            system,
-            algorithm=algorithm,
-            settings=settings,
-            goal_radius=goal_radius,
-            goal_speed=goal_speed,
-            simplify=simplify,
-            seed=seed,
-        )
-        return plan_motion(motion, seconds, transitions, improve_seconds, improve_searches, cancel)
-    if goal_speed != math.inf:
-        raise RequestError(f'goal_speed goes with a system only, got {goal_speed!r}')
-    request = check_request(space, start, goal, goal_radius, algorithm, settings, simplify, seed)
+    request = check_request(
+        space,
+        start,
+        goal,
+        goal_radius=goal_radius,
+        simplify=simplify,
+        seed=seed,
+        clearance=clearance,
+        algorithm=algorithm,
+        settings=settings,
+    )
     n_paths = check_alternatives(space, alternatives, request.simplify)
-    _compile(request, n_paths)
+    allowance = check_allowance(space, goal_tolerance, start_escape)
 
-    began = time.perf_counter()
-    limits = Budget(began + seconds, transitions, cancel)
-    known = outcome_without_search(request)
-    if known is not None:
-        answer = _answer_without_search(request, *known, limits, began)
+    began = working_time()
+    budget = effort.budget(began)
+    moved = move_ends(request, allowance)
+    request = moved.request
+    if moved.outcome is not None:
+        result = _result_without_search(request, *moved.outcome, budget, began)
     else:
-        answer = _answer_by_search(request, limits, improve_seconds, improve_searches, began)
-    if n_paths > 1 and answer.status is PlannerStatus.SOLVED:
-        answer = with_alternatives(request, answer, n_paths, limits, began)
-    return answer
+        result = _result_of_search(request, effort, budget, began)
+    if n_paths > 1 and result.status is PlannerStatus.SOLVED:
+        result = with_alternatives(request, result, n_paths, budget, began)
+    return moved.lead_out(result)
 
 
-def _check_for_system(alternatives: int) -> None:
-    if check_count('alternatives', alternatives, 1) > 1:
-        raise RequestError(f'alternatives must be 1 for a system, got {alternatives}')
+def _refuse_trajectories(settings: dict[str, Any]) -> None:
+    for name in OF_TRAJECTORIES:
+        if name in settings:
+            raise RequestError(
+                f'plan takes no {name}: a trajectory of a system is planned by '
+                f'plan_trajectory(space, system, start, goal, ...)'
+            )
 
 
-def _answer_by_search(
-    request: Request, limits: Budget, improve_seconds: float, improve_searches: int, began: float
+def _result_of_search(
+    request: Request, effort: Effort, budget: Budget, began: float
 ) -> PlanResult:
-    """Search, and search again for a shorter path where that is asked for."""
-    improving = None
-    if improve_seconds or improve_searches:
-        until = began + (improve_seconds or math.inf)
-        improving = replace(limits, deadline=min(limits.deadline, until))
-    best = attempt(request, 0, limits, began, improving)
-    first, iterations = best.first, best.search.iterations
-    if first is not None and improving is not None:
-        best, iterations = improve(request, best, improve_searches or math.inf, improving, began)
-        limits.cut = limits.cut or improving.cut
+    """Search, and search again for a better path where that is asked for."""
+    optimizing = effort.optimizing(budget, began) if effort.optimizes else None
+    best = attempt(request, 0, budget, began, optimizing)
+    first, work = best.first, Work.of(best.search)
+    if first is not None and optimizing is not None:
+        rounds, patience = effort.optimize_rounds, effort.optimize_patience
+        best, work = optimize(request, best, rounds, patience, optimizing, began)
+        budget.cut = budget.cut or optimizing.cut
     samples = request.space.from_kernel(best.search.samples)
     samples[0] = request.start
     return PlanResult(
         status=best.status,
-        message=_message(best, iterations, began),
-        planner=request.planner.name,
+        message=_message(request, best, work.iterations, began),
+        planner=getattr(best.search, 'made_by', request.planner.name),
         path=best.path,
         length=path_length(best.path) if len(best.path) else math.inf,
         samples=samples,
         parents=best.search.parents.copy(),
-        iterations=iterations,
-        counts=best.search.counts,
-        elapsed=time.perf_counter() - began,
+        iterations=work.iterations,
+        counts=work.counts,
+        elapsed=working_time() - began,
         seed=request.seed,
-        cut_by_time=limits.cut,
+        cut_by_time=budget.cut,
         first_solution=first,
     )
 
 
-def _answer_without_search(
-    request: Request, status: PlannerStatus, message: str, limits: Budget, began: float
+def _result_without_search(
+    request: Request, status: PlannerStatus, message: str, budget: Budget, began: float
 ) -> PlanResult:
-    """Answer a request that needs no search to fail or to succeed."""
+    """Build the result of a request that needs no search to fail or to succeed."""
     path, length, samples, first = np.empty((0, len(request.start))), math.inf, 0, None
     if status is PlannerStatus.SOLVED:
         end = request.goal if request.goal_radius == 0.0 else request.start
         path, samples = np.stack([request.start, end]), 1
-        first = FirstSolution(time.perf_counter() - began, path_length(path))
-        path = with_clearance(request, path, limits)
+        first = FirstSolution(working_time() - began, path_length(path), path)
+        path = with_clearance(request, path, budget)
         length = path_length(path)
     return PlanResult(
         status=status,
@@ -209,39 +214,19 @@ def _answer_without_search(
         parents=np.full(samples, -1),
         iterations=0,
         counts={},
-        elapsed=time.perf_counter() - began,
+        elapsed=working_time() - began,
         seed=request.seed,
-        cut_by_time=limits.cut,
+        cut_by_time=budget.cut,
         first_solution=first,
     )
 
 
-def _message(best: Attempt, iterations: int, began: float) -> str:
-    """Say in words how a search ended."""
-    if best.status is PlannerStatus.SOLVED:
+def _message(request: Request, best: Attempt, iterations: int, began: float) -> str:
+    """Return a description of how a search ended."""
+    if best.status is PlannerStatus.SOLVED and best.first is not None:
         found = f'path of {path_length(best.path):.6g} m with {len(best.path)} vertices'
-        return f'{found} after {iterations} transitions'
-    seconds = time.perf_counter() - began
+        as_found = request.simplify and not best.search.taut and best.path is best.first.path
+        nothing = ', of which no shortcut is free' if as_found and len(best.path) > 2 else ''
+        return f'{found} after {iterations} transitions{nothing}'
+    seconds = working_time() - began
     return f'{best.status.value} ({iterations} transitions, {seconds:.3g} s)'
-
-
-_compiled: set[tuple[tuple[Any, ...], type[Planner], bool, bool]] = set()
-
-
-def _compile(request: Request, n_paths: int) -> None:
-    """Compile, once for each kind of space and planner, before any clock runs."""
-    space = request.space
-    kinds = kind_of(space.data), type(request.planner), n_paths > 1, request.clearance > 0.0
-    if kinds in _compiled:
-        return
-    compile_search(request.planner, request.problem)
-    outcome_without_search(request)
-    ends = np.stack([request.start, request.start])
-    compile_shorten(space, ends)
-    space.first_blocked_segment(ends)
-    space.rough_path(request.problem.start, request.problem.start)
-    if n_paths > 1:
-        compile_alternatives(request)
-    if request.clearance > 0.0:
-        compile_clearance(space, ends, request.clearance)
-    _compiled.add(kinds)

@@ -1,5 +1,5 @@
 """
-What a planner is: a value that starts searches, which advance by counts and know no clock.
+Protocols of planners and searches: planners start searches, which advance by counts, not clocks.
 
 A planner is a frozen dataclass whose fields are its settings. Its ``start`` gives a search, whose
 ``advance(n)`` handles at most ``n`` further transitions. Batches may be of any size: the same
@@ -11,13 +11,13 @@ from typing import Any, NamedTuple, Protocol
 
 from hnr_planner.core.checks import Floats
 from hnr_planner.core.kernels.kernel import kernel
-from hnr_planner.core.kernels.streams import Stream, stream
+from hnr_planner.core.kernels.streams import Stream
 from hnr_planner.core.spaces.primitives import segment_is_free
 from hnr_planner.core.spaces.space import Space
 import numpy as np
 from numpy.typing import NDArray
 
-#: How many times longer a table becomes when it is full.
+#: Factor by which a table grows when it is full.
 GROWTH = 8
 
 
@@ -37,8 +37,8 @@ class Problem(NamedTuple):
         Radius of the goal region; 0 when the path has to end exactly at the goal.
     margin : float
         Distance from a chord's end at which one stops.
-    clearance : float
-        What a free point is away from the boundary, roughly and on average.
+    typical_clearance : float
+        Distance from a free point to the boundary, roughly and on average.
     scale : float
         Caller's units [m] in one unit of the kernel frame.
 
@@ -51,7 +51,7 @@ class Problem(NamedTuple):
     goal: Floats
     goal_radius: float
     margin: float
-    clearance: float
+    typical_clearance: float
     scale: float
 
 
@@ -66,14 +66,14 @@ def make_problem(space: Space, start: Floats, goal: Floats, goal_radius: float) 
         goal=space.to_kernel(goal),
         goal_radius=goal_radius / space.scale,
         margin=space.margin,
-        clearance=space.typical_clearance,
+        typical_clearance=space.typical_clearance,
         scale=space.scale,
     )
 
 
 @kernel
 def reaches_goal(problem, x):
-    """Say whether a sample ends the search: it lies in the region, or it sees an exact goal."""
+    """Return whether ``x`` (dim,) ends a search: in the region, or with an exact goal visible."""
     if problem.goal_radius == 0.0:
         return segment_is_free(problem.space, x, problem.goal)
     squared = 0.0
@@ -87,11 +87,11 @@ class Search(Protocol):
 
     @property
     def iterations(self) -> int:
-        """Transitions handled: proposals drawn from the space, whatever became of them."""
+        """Transitions handled: proposals drawn from the space, accepted or not."""
 
     @property
     def solved(self) -> bool:
-        """Whether what it searches for is known."""
+        """Whether the search is over: its path is found."""
 
     @property
     def samples(self) -> Floats:
@@ -103,10 +103,28 @@ class Search(Protocol):
 
     @property
     def counts(self) -> dict[str, int]:
-        """What else was counted, by name."""
+        """Further counts by name."""
 
     def advance(self, n_iterations: int) -> None:
         """Handle at most ``n_iterations`` further transitions, fewer once solved."""
+
+
+class Work(NamedTuple):
+    """Work of several searches: transitions, and further counts by name."""
+
+    iterations: int
+    counts: dict[str, int]
+
+    @classmethod
+    def of(cls, search: Search) -> 'Work':
+        """Return the work of one search."""
+        return cls(search.iterations, search.counts)
+
+    def plus(self, other: 'Work') -> 'Work':
+        """Return the work of both."""
+        names = {**self.counts, **other.counts}
+        counts = {name: self.counts.get(name, 0) + other.counts.get(name, 0) for name in names}
+        return Work(self.iterations + other.iterations, counts)
 
 
 class PathSearch(Search, Protocol):
@@ -118,7 +136,7 @@ class PathSearch(Search, Protocol):
 
     @property
     def taut(self) -> bool:
-        """Whether the path of a solved search is as short as pulling could make it."""
+        """Whether pulling the path of a solved search taut gains nothing."""
 
 
 class Planner(Protocol):
@@ -126,22 +144,10 @@ class Planner(Protocol):
 
     @property
     def name(self) -> str:
-        """Name in ``plan``'s table of algorithms."""
+        """Name that results state."""
 
     def start(self, problem: Problem, rng: Stream) -> PathSearch:
         """Start a search."""
-
-
-def compile_search(planner: Planner, problem: Problem) -> None:
-    """
-    Compile what searches of a planner run, both the first steps and later ones.
-
-    Nobody has looked at start and goal yet, which may lie anywhere: the bounds stand for them.
-    """
-    bounded = problem._replace(start=problem.lower, goal=problem.upper)
-    search = planner.start(bounded, stream(0))
-    for _ in range(2):
-        search.advance(0)
 
 
 def to_goal(problem: Problem, points: Floats) -> Floats:
@@ -153,8 +159,8 @@ def with_room(array: NDArray[Any], rows: int) -> NDArray[Any]:
     """
     Return ``array``, or a copy several times as long when it has fewer than ``rows``.
 
-    Copies are what a clock would have to wait for, so they are rare; room that is not used yet
-    takes no memory.
+    A clock is not checked during a copy, so copies are rare; rows that are not used yet take no
+    memory.
     """
     if len(array) >= rows:
         return array

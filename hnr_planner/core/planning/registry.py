@@ -1,33 +1,100 @@
-"""Planners by name."""
+"""
+The planners of ``plan``, each listed once.
 
+Names and descriptions are known without importing any planner, so that command lines and
+documentation can show them at once: this module needs neither NumPy nor the compiler.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
 from dataclasses import fields
-from typing import Any
+from importlib import import_module
+from typing import Any, NamedTuple
 
-from hnr_planner.core.checks import check_choice
 from hnr_planner.core.errors import RequestError
-from hnr_planner.core.planning.planner import Planner
-from hnr_planner.core.planning.planners.hit_and_run import HitAndRun
-from hnr_planner.core.planning.planners.hit_and_run_connect import HitAndRunConnect
-from hnr_planner.core.planning.planners.rrt import RRT
-from hnr_planner.core.planning.planners.rrt_connect import RRTConnect
 
-_PLANNERS = (HitAndRun, RRT, HitAndRunConnect, RRTConnect)
-_KINDS: dict[str, type[Any]] = {
-    'auto': HitAndRunConnect,
-    **{planner.name: planner for planner in _PLANNERS},
-}
+_PLANNERS = 'hnr_planner.core.planning.planners'
+
+
+class PlannerEntry(NamedTuple):
+    """
+    A planner as it is listed: its name, where its class is, and what it does.
+
+    Attributes
+    ----------
+    name : str
+        Name that ``algorithm`` takes.
+    module, class_name : str
+        Where the class is; it is imported when a planner is made.
+    summary : str
+        One line that says how it searches.
+
+    """
+
+    name: str
+    module: str
+    class_name: str
+    summary: str
+
+    def load(self) -> type[Any]:
+        """Return the class, a dataclass whose fields are the planner's settings."""
+        kind: type[Any] = getattr(import_module(self.module), self.class_name)
+        return kind
+
+
+#: The planners of ``plan``.
+PLANNERS = (
+    PlannerEntry(
+        'auto',
+        f'{_PLANNERS}.auto',
+        'Auto',
+        'hit_and_run_connect, and on a grid a flood fill where that takes long: for any request',
+    ),
+    PlannerEntry(
+        'hit_and_run',
+        f'{_PLANNERS}.hit_and_run',
+        'HitAndRun',
+        "the paper's Hit-and-Run: a chain of steps from the start to where the goal is visible",
+    ),
+    PlannerEntry(
+        'rrt',
+        f'{_PLANNERS}.rrt',
+        'RRT',
+        "the paper's RRT: a tree that grows towards uniform points of the space",
+    ),
+    PlannerEntry(
+        'hit_and_run_connect',
+        f'{_PLANNERS}.hit_and_run_connect',
+        'HitAndRunConnect',
+        'trees of Hit-and-Run steps from both ends, joined by the first free segment between them',
+    ),
+    PlannerEntry(
+        'rrt_connect',
+        f'{_PLANNERS}.rrt_connect',
+        'RRTConnect',
+        'RRT-Connect: RRTs from both ends, each extended towards the new vertices of the other',
+    ),
+)
 
 #: Names that ``plan`` takes.
-ALGORITHMS = tuple(_KINDS)
+ALGORITHMS = tuple(entry.name for entry in PLANNERS)
 
 
 def make_planner(
-    algorithm: str | Planner, settings: dict[str, Any], kinds: dict[str, type[Any]] = _KINDS
-) -> Planner:
+    algorithm: Any, settings: dict[str, Any], entries: Sequence[PlannerEntry] = PLANNERS
+) -> Any:
     """
     Return the planner that ``algorithm`` means, built with ``settings`` where it is a name.
 
-    The names are those of ``kinds``.
+    Parameters
+    ----------
+    algorithm : str or planner
+        A name of ``entries``, or a planner value, which is returned as it is.
+    settings : dict
+        Settings of the planner named.
+    entries : sequence of PlannerEntry
+        The planners to choose from.
 
     Raises
     ------
@@ -41,7 +108,10 @@ def make_planner(
         if settings:
             raise RequestError(f'settings {sorted(settings)} go with the name of a planner only')
         return algorithm
-    kind = kinds[check_choice('algorithm', algorithm, tuple(kinds))]
+    by_name = {entry.name: entry for entry in entries}
+    if algorithm not in by_name:
+        raise RequestError(f'algorithm must be one of {", ".join(by_name)}, got {algorithm!r}')
+    kind = by_name[algorithm].load()
     known = [field.name for field in fields(kind)]
     for setting in settings:
         if setting not in known:

@@ -1,12 +1,15 @@
-"""A planning request at the door: clean numbers, and what needs no search to be answered."""
+"""Validation of planning requests, and the outcome of those that need no search."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+import math
 from typing import Any
 
-from hnr_planner.core.checks import check_number, check_point, check_seed, Floats
+from hnr_planner.core.cancellation import Event
+from hnr_planner.core.checks import check_count, check_number, check_point, check_seed, Floats
 from hnr_planner.core.errors import RequestError
 from hnr_planner.core.kernels.kernel import kernel
 from hnr_planner.core.kernels.streams import Stream, stream
+from hnr_planner.core.planning.limits import Budget
 from hnr_planner.core.planning.planner import make_problem, Planner, Problem, reaches_goal
 from hnr_planner.core.planning.registry import make_planner
 from hnr_planner.core.planning.result import PlannerStatus
@@ -14,11 +17,91 @@ from hnr_planner.core.spaces.primitives import component
 from hnr_planner.core.spaces.space import Space
 from numpy.typing import ArrayLike
 
+#: Rounds of looking for better answers in a second of ``optimize_for``: about half of what a
+#: processor of 2020 does on building maps, so that the clock hardly ever cuts. And the rounds in a
+#: row without a gain after which no more are tried.
+ROUNDS_PER_SECOND, PATIENCE = 1000, 10
+#: Largest clearance that may be asked for [m].
+CLEARANCE_MAX = 1e6
+
+
+@dataclass(frozen=True)
+class Effort:
+    """
+    Limits on the work for one request, as its caller gave them.
+
+    Attributes
+    ----------
+    time_limit : float
+        Time for the whole call [s]; may be inf.
+    max_iterations : float
+        Transitions allowed for one search; may be inf.
+    optimize_for : float
+        Time of the call in which better answers are looked for [s]; 0 for no such limit.
+    optimize_iterations : int
+        Rounds of looking for better answers; 0 for no such limit.
+    cancel : Event or None
+        Ends the call once it is set.
+
+    """
+
+    time_limit: float
+    max_iterations: float
+    optimize_for: float
+    optimize_iterations: int
+    cancel: Event | None
+
+    @property
+    def optimizes(self) -> bool:
+        """Whether better answers are to be looked for."""
+        return self.optimize_for > 0.0 or self.optimize_iterations > 0
+
+    @property
+    def optimize_rounds(self) -> float:
+        """Largest number of rounds of looking for better answers."""
+        if self.optimize_iterations == 0 and self.optimize_for < math.inf:
+            return math.ceil(ROUNDS_PER_SECOND * self.optimize_for)
+        return self.optimize_iterations or math.inf
+
+    @property
+    def optimize_patience(self) -> float:
+        """Number of rounds in a row without a gain after which no more are tried."""
+        return PATIENCE if self.optimize_iterations == 0 else math.inf
+
+    def budget(self, began: float) -> Budget:
+        """Return the budget of a call that began at this ``working_time``."""
+        return Budget(began + self.time_limit, self.max_iterations, self.cancel)
+
+    def optimizing(self, budget: Budget, began: float) -> Budget:
+        """Return the part of a call's budget in which better answers are looked for."""
+        until = began + (self.optimize_for or math.inf)
+        return replace(budget, deadline=min(budget.deadline, until))
+
+
+def check_effort(
+    *,
+    time_limit: float,
+    max_iterations: int | None,
+    optimize_for: float,
+    optimize_iterations: int,
+    cancel: Event | None,
+) -> Effort:
+    """Return the limits that a caller's arguments make, or raise RequestError."""
+    if cancel is not None and not callable(getattr(cancel, 'is_set', None)):
+        raise RequestError(f'cancel must be an event such as threading.Event(), got {cancel!r}')
+    return Effort(
+        check_number('time_limit', time_limit, 0.0),
+        math.inf if max_iterations is None else check_count('max_iterations', max_iterations, 1),
+        check_number('optimize_for', optimize_for, 0.0),
+        check_count('optimize_iterations', optimize_iterations, 0),
+        cancel,
+    )
+
 
 @dataclass(frozen=True)
 class Request:
     """
-    A request whose numbers are clean.
+    A validated request for a path.
 
     Attributes
     ----------
@@ -27,17 +110,17 @@ class Request:
     start, goal : (dim,)
         Caller's frame.
     goal_radius : float
-        Caller's units.
+        Radius of the goal region, caller's units; 0 for an exact goal.
     planner : Planner
-        Who searches.
+        The planner that searches.
     simplify : bool
         Whether the path is shortened.
     clearance : float
         Distance to obstacles that the path keeps where there is room, caller's units.
     seed : int
-        What every draw follows from.
+        The seed of every draw.
     problem : Problem
-        The same in the kernel frame.
+        The same problem in the kernel frame.
 
     """
 
@@ -55,21 +138,35 @@ class Request:
         """Return the random stream for one purpose: each has its own, all follow from the seed."""
         return stream(self.seed, *purpose)
 
+    def moved(
+        self,
+        start: Floats | None = None,
+        goal: Floats | None = None,
+        goal_radius: float | None = None,
+    ) -> 'Request':
+        """Return the same request with other ends, caller's frame and units."""
+        start, goal = (b if a is None else a for a, b in ((start, self.start), (goal, self.goal)))
+        goal_radius = self.goal_radius if goal_radius is None else goal_radius
+        problem = make_problem(self.space, start, goal, goal_radius)
+        return replace(self, start=start, goal=goal, goal_radius=goal_radius, problem=problem)
+
 
 def check_request(
     space: Space,
     start: ArrayLike,
     goal: ArrayLike,
+    *,
     goal_radius: float,
-    algorithm: str | Planner,
-    settings: dict[str, Any],
     simplify: bool,
     seed: int | None,
+    clearance: float = 0.0,
+    algorithm: str | Planner = 'auto',
+    settings: dict[str, Any] | None = None,
 ) -> Request:
     """Return the request that a caller's arguments make, or raise RequestError."""
     start, goal = check_point('start', start, space.dim), check_point('goal', goal, space.dim)
     goal_radius = check_number('goal_radius', goal_radius, 0.0)
-    planner = make_planner(algorithm, settings)
+    planner = make_planner(algorithm, settings or {})
     return Request(
         space,
         start,
@@ -77,15 +174,15 @@ def check_request(
         goal_radius,
         planner,
         bool(simplify),
-        _check_clearance(space, planner, simplify),
+        _check_clearance(space, clearance, simplify),
         check_seed(seed),
         make_problem(space, start, goal, goal_radius),
     )
 
 
-def _check_clearance(space: Space, planner: Planner, simplify: bool) -> float:
-    """Return the clearance that a planner asks for, or raise RequestError."""
-    clearance = getattr(planner, 'clearance', 0.0)  # a setting that only some planners have
+def _check_clearance(space: Space, clearance: float, simplify: bool) -> float:
+    """Return the clearance asked for, or raise RequestError where it cannot be kept."""
+    clearance = check_number('clearance', clearance, 0.0, CLEARANCE_MAX)
     if clearance > 0.0 and space.walls is None:
         raise RequestError(
             f'clearance must be 0 in a {type(space).__name__}, which does not know how far '
@@ -93,43 +190,46 @@ def _check_clearance(space: Space, planner: Planner, simplify: bool) -> float:
         )
     if clearance > 0.0 and not simplify:
         raise RequestError(f'clearance must be 0 when simplify is false, got {clearance!r}')
-    return float(clearance)
+    return clearance
 
 
 def outcome_without_search(request: Request) -> tuple[PlannerStatus, str] | None:
     """
-    Say how a request ends that needs no search, and why; None for one that does.
+    Return the status of a request that needs no search, and the reason; None for one that does.
 
     An end that is not free, no way between the two, or a start that reaches the goal as it is.
     """
     space, start, goal = request.space, request.start, request.goal
-    start_part, goal_part, reached = _look(request.problem)
-    if start_part == 0:
-        message = f'start {_words(start)} is {space.why_not_free(start)}'
+    start_component, goal_component, reached = _components_of_ends(request.problem)
+    if start_component == 0:
+        message = f'start {in_words(start)} is {space.why_not_free(start)}'
         return PlannerStatus.INVALID_START, message
     if reached:
-        return PlannerStatus.SOLVED, f'start {_words(start)} reaches the goal directly'
-    if start_part == goal_part:
+        return PlannerStatus.SOLVED, f'start {in_words(start)} reaches the goal directly'
+    if start_component == goal_component:
         return None
-    if goal_part == 0 and request.goal_radius == 0.0:
-        message = f'goal {_words(goal)} is {space.why_not_free(goal)}'
+    if goal_component == 0 and request.goal_radius == 0.0:
+        message = f'goal {in_words(goal)} is {space.why_not_free(goal)}'
         return PlannerStatus.INVALID_GOAL, message
     around = ''
     if request.goal_radius > 0.0:
         if space.region_reachable(start, goal, request.goal_radius):
             return None
         around = f' or within {request.goal_radius:g} m of it'
-    message = f'no path exists from start {_words(start)} to goal {_words(goal)}{around}'
-    return (PlannerStatus.UNREACHABLE if goal_part else PlannerStatus.INVALID_GOAL), message
+    message = f'no path exists from start {in_words(start)} to goal {in_words(goal)}{around}'
+    status = PlannerStatus.UNREACHABLE if goal_component else PlannerStatus.INVALID_GOAL
+    return status, message
 
 
 @kernel
-def _look(problem):
-    """Parts of the space that hold start and goal, 0 for none; whether one reaches the other."""
-    start_part = component(problem.space, problem.start)
-    goal_part = component(problem.space, problem.goal)
-    return start_part, goal_part, start_part != 0 and reaches_goal(problem, problem.start)
+def _components_of_ends(problem):
+    """Components of start and goal, 0 where not free; whether the start reaches the goal."""
+    start_component = component(problem.space, problem.start)
+    goal_component = component(problem.space, problem.goal)
+    reached = start_component != 0 and reaches_goal(problem, problem.start)
+    return start_component, goal_component, reached
 
 
-def _words(point: Floats) -> str:
+def in_words(point: Floats) -> str:
+    """Return a point (dim,) for a message."""
     return '(' + ', '.join(f'{x:g}' for x in point) + ')'

@@ -1,17 +1,16 @@
-"""What ``plan`` answers."""
+"""Results of ``plan``, and what they share with those of ``plan_trajectory``."""
 
 from dataclasses import dataclass
 from enum import Enum
 from typing import NamedTuple
 
 from hnr_planner.core.checks import Floats
-from hnr_planner.core.systems.trajectory import Trajectory
 import numpy as np
 from numpy.typing import NDArray
 
 
 class PlannerStatus(Enum):
-    """How a request ended; the value says it in words."""
+    """How a request ended; the value is a description of it."""
 
     SOLVED = 'a path was found'
     INVALID_START = 'the start is not free'
@@ -24,22 +23,35 @@ class PlannerStatus(Enum):
 
 
 class FirstSolution(NamedTuple):
-    """The first path, before anything made it shorter: time to it [s] and its length [m]."""
+    """
+    The first path that was found, before anything made it shorter.
+
+    Attributes
+    ----------
+    elapsed : float
+        Time from the beginning of the call until it was found [s].
+    length : float
+        Its length [m].
+    path : (m, dim)
+        Its vertices from start to goal, caller's frame; for a trajectory its positions.
+
+    """
 
     elapsed: float
     length: float
+    path: Floats
 
 
-@dataclass(frozen=True)
-class PlanResult:
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class SearchResult:
     """
-    Answer to a planning request, in the caller's frame and units.
+    What results of all planners have, in the caller's frame and units.
 
     Attributes
     ----------
     status : PlannerStatus
     message : str
-        Why, in words, with the values.
+        Why the request ended like this, with the values.
     planner : str
         Name of the planner that searched.
     path : (m, dim)
@@ -52,9 +64,9 @@ class PlanResult:
     parents : (k,) int
         Row of ``samples`` that each was reached from; -1 for the roots.
     iterations : int
-        Transitions handled: proposals inside the space, whatever became of them.
+        Transitions handled: proposals inside the space, accepted or not, of all searches together.
     counts : dict
-        What else the search counted, by name.
+        Further counts by name, of all searches together.
     elapsed : float
         Time of the whole call [s], compilation aside.
     seed : int
@@ -63,11 +75,6 @@ class PlanResult:
         Whether a clock or a cancellation ended something: only then may the same seed give
         another result.
     first_solution : FirstSolution or None
-    others : tuple of (k, dim)
-        Further paths, when alternatives were asked for.
-    trajectory : Trajectory or None
-        For a system what it does over time; ``path`` has the positions at its times, between which
-        the way is curved, and ``length`` is the length of that way.
 
     """
 
@@ -84,8 +91,37 @@ class PlanResult:
     seed: int
     cut_by_time: bool
     first_solution: FirstSolution | None
+
+    def __repr__(self) -> str:
+        """Return status, length, and how much there is of everything, without the arrays."""
+        return (
+            f'{type(self).__name__}({self.status.name}, length={self.length:.6g}, '
+            f'vertices={len(self.path)}, samples={len(self.samples)}, '
+            f'iterations={self.iterations}, planner={self.planner!r}, seed={self.seed})'
+        )
+
+
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class PlanResult(SearchResult):
+    """
+    Result of ``plan``: all that a ``SearchResult`` has, and the attributes below.
+
+    Attributes
+    ----------
+    others : tuple of (k, dim)
+        Further paths, when alternatives were asked for.
+    goal_offset : float
+        Distance from the goal asked for to the end of the path [m], where ``goal_tolerance`` let
+        the goal be moved; else 0.
+    escape : float
+        Length of the first segment of the path [m], where ``start_escape`` let it lead out of a
+        start that is not free; else 0.
+
+    """
+
     others: tuple[Floats, ...] = ()
-    trajectory: Trajectory | None = None
+    goal_offset: float = 0.0
+    escape: float = 0.0
 
     @property
     def paths(self) -> tuple[Floats, ...]:

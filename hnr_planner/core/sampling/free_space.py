@@ -10,7 +10,7 @@ from concurrent.futures import ThreadPoolExecutor
 import math
 from typing import NamedTuple
 
-from hnr_planner.core.cancellation import Event, in_parts
+from hnr_planner.core.cancellation import Event, in_chunks
 from hnr_planner.core.checks import check_count, check_seed, Floats, Seed
 from hnr_planner.core.errors import RequestError, SpaceError
 from hnr_planner.core.kernels.streams import Stream, stream, uniform
@@ -125,7 +125,7 @@ def sample_free_space(
             points[chain, first] = x = point_in_cell(cells[first], labels.shape, rng)
             state = new_chain(space, x, rng)
             later = np.empty((len(draws) - 1, space.dim))
-            for rows in in_parts(len(later), cancel, max(1, STEPS_AT_ONCE // thin)):
+            for rows in in_chunks(len(later), cancel, max(1, STEPS_AT_ONCE // thin)):
                 run_chain(space, compiled, state, thin, later[rows])
             points[chain, draws[1:]] = later
 

@@ -118,6 +118,20 @@ def segment_is_free(space: CompiledSpace, a: Floats, b: Floats) -> bool:
     return not u.any() or first_exit(space, a, u, 0.0, 1.0) > 1.0
 
 
+@dispatched
+@kernel
+def flood_path(
+    space: CompiledSpace, start: Floats, goal: Floats, goal_radius: float, margin: float
+) -> Floats:
+    """
+    Return a free path (m, dim) from ``start`` into the goal region, wherever there is one.
+
+    It may be long. It ends at ``goal`` for a ``goal_radius`` of 0, else at a point ``margin`` or
+    more inside the space. (0, dim) where there is none, or the space does not know.
+    """
+    return np.empty((0, len(start)))
+
+
 def kind_of(space: CompiledSpace) -> tuple[Any, ...]:
     """Return what machine code depends on: the types of a compiled space and of nested ones."""
     return (type(space), *(kind_of(field) for field in space if contains.knows(field)))

@@ -114,12 +114,13 @@ class Space(ABC):
         return f'{type(self).__name__}(dim={self.dim})'
 
     def __getstate__(self) -> dict[str, Any]:
-        """Leave cached properties out of pickles: they may hold addresses of this process."""
-        return {
-            name: value
-            for name, value in self.__dict__.items()
-            if not isinstance(getattr(type(self), name, None), cached_property)
-        }
+        """Leave out what is cached: it may hold addresses of functions in this process."""
+        kind, state = type(self), self.__dict__.copy()
+        assigned = {'data'} if kind.data is Space.data and '_functions' not in state else set()
+        for name in self.__dict__.keys() - assigned:
+            if isinstance(getattr(kind, name, None), cached_property):
+                del state[name]
+        return state
 
     def compiled_at(self, origin: Floats | None) -> CompiledSpace:
         """Return the compiled space in the caller's frame moved to ``origin`` (dim,); None: 0."""

@@ -1,8 +1,8 @@
-"""Systems: robots with inertia, what they can do and where that takes them."""
+"""Systems: robots with inertia, their limits and their motion."""
 
 from hnr_planner.core.systems.car import Car
 from hnr_planner.core.systems.double_integrator import DoubleIntegrator
 from hnr_planner.core.systems.system import System
-from hnr_planner.core.systems.trajectory import Trajectory
+from hnr_planner.core.systems.trajectory import join_trajectories, Trajectory
 
-__all__ = ['Car', 'DoubleIntegrator', 'System', 'Trajectory']
+__all__ = ['Car', 'DoubleIntegrator', 'System', 'Trajectory', 'join_trajectories']

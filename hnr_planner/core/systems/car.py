@@ -1,38 +1,27 @@
 """
-A planar base with bounded speed, acceleration and curvature: a car, or a unicycle that rolls.
+A planar base with bounded speed, acceleration and curvature: a car, or a unicycle.
 
-Under constant controls it runs along an arc, whatever its speed does on the way: the contact with
-a boundary is one of the arc.
+Under constant controls it moves along a circular arc, whatever its speed does meanwhile: so the
+first contact with a boundary is found on the arc.
 """
 
 from dataclasses import dataclass
 import math
 from typing import ClassVar, NamedTuple
 
-from hnr_planner.core.checks import check_number, check_point, Floats
-from hnr_planner.core.errors import RequestError
+from hnr_planner.core.checks import Floats
 from hnr_planner.core.kernels.kernel import kernel
 from hnr_planner.core.spaces.curves.curve import Arc, at, coordinate, first_exit_on_curve
 from hnr_planner.core.spaces.space import Space
-from hnr_planner.core.systems.limits import check_limit
-from hnr_planner.core.systems.primitives import (
-    brake,
-    contact,
-    halt,
-    move,
-    moved,
-    steer,
-    velocity,
-)
-from hnr_planner.core.systems.system import ROUNDING, vectors_to_kernel
+from hnr_planner.core.systems.primitives import brake, contact, halt, move, steer, velocity
+from hnr_planner.core.systems.system import check_limit, System, vectors_to_kernel
 import numpy as np
-from numpy.typing import ArrayLike
 
 X, Y, HEADING, SPEED = range(4)
 
 
 class CarData(NamedTuple):
-    """A compiled car: its limits."""
+    """A compiled car: its limits, in the kernel frame of a space."""
 
     max_acceleration: float
     max_speed: float
@@ -40,13 +29,13 @@ class CarData(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Car:
+class Car(System):
     """
-    A planar base that goes where it points, forwards and backwards.
+    A planar base that moves along its heading, forwards and backwards.
 
     A state is (x, y, heading, speed) [m, m, rad, m/s], a speed below 0 goes backwards. A control
     is (acceleration, curvature) [m/s^2, 1/m], curvature above 0 turns left. Curvature may jump:
-    a base that steers slowly stops for it, or follows with a small error.
+    a base that steers slowly stops for that, or follows with a small error.
 
     Attributes
     ----------
@@ -73,7 +62,7 @@ class Car:
 
     @property
     def largest_acceleration(self) -> float:
-        """Largest change of the velocity (2,) in a second [m/s^2], with that of turning."""
+        """Largest change of the velocity (2,) in a second [m/s^2], that by turning included."""
         return math.hypot(self.max_acceleration, self.max_curvature * self.max_speed**2)
 
     @property
@@ -81,33 +70,17 @@ class Car:
         """The compiled system in the caller's units."""
         return CarData(self.max_acceleration, self.max_speed, self.max_curvature)
 
-    def check_state(self, name: str, state: ArrayLike) -> Floats:
-        """Return a state (4,) within the speed limit, or raise RequestError."""
-        checked = check_point(name, state, self.state_dim)
-        if self.speed(checked) > self.max_speed * (1.0 + ROUNDING):
-            raise RequestError(
-                f'{name} must be no faster than max_speed, {self.max_speed:g} m/s, '
-                f'got {float(checked[SPEED])!r} m/s'
-            )
-        return checked
-
-    def propagate(self, state: ArrayLike, control: ArrayLike, duration: float) -> Floats:
-        """Return the state (4,) after ``duration`` [s] under a constant control."""
-        start = check_point('state', state, self.state_dim)
-        checked = check_point('control', control, self.control_dim)
-        return moved(self.data, start, checked, check_number('duration', duration, 0.0))
-
     def velocity(self, state: Floats) -> Floats:
-        """Return how a state moves: (2,) [m/s]."""
+        """Return the velocity [m/s] of a state (4,) as a vector (2,)."""
         heading, speed = state[HEADING], state[SPEED]
         return speed * np.array([math.cos(heading), math.sin(heading)])
 
     def speed(self, state: Floats) -> float:
-        """Return the speed [m/s] of a state, forwards or backwards."""
+        """Return the speed [m/s] of a state (4,), at least 0 also backwards."""
         return abs(float(state[SPEED]))
 
     def lengths(self, states: Floats, controls: Floats, durations: Floats) -> Floats:
-        """Return how far steps go, back and forth: (k,) [m]."""
+        """Return how far states (k, 4) go in durations (k,), back and forth: (k,) [m]."""
         before, pull = states[:, SPEED], controls[:, 0]
         after = before + pull * durations
         turns = before * after < 0.0
@@ -122,32 +95,32 @@ class Car:
         )
 
     def to_kernel(self, space: Space, states: Floats) -> Floats:
-        """Bring states (..., 4) into the kernel frame of a space."""
+        """Convert states (..., 4) to the kernel frame of a space."""
         inside = np.empty_like(states)
         inside[..., :HEADING] = space.to_kernel(states[..., :HEADING])
-        inside[..., HEADING] = states[..., HEADING] + _turn(space)
+        inside[..., HEADING] = states[..., HEADING] + _yaw(space)
         inside[..., SPEED] = states[..., SPEED] / space.scale
         return inside
 
     def from_kernel(self, space: Space, states: Floats) -> Floats:
-        """Bring states (..., 4) out of the kernel frame of a space."""
+        """Convert states (..., 4) from the kernel frame of a space."""
         outside = np.empty_like(states)
         outside[..., :HEADING] = space.from_kernel(states[..., :HEADING])
-        outside[..., HEADING] = states[..., HEADING] - _turn(space)
+        outside[..., HEADING] = states[..., HEADING] - _yaw(space)
         outside[..., SPEED] = states[..., SPEED] * space.scale
         return outside
 
     def controls_to_kernel(self, space: Space, controls: Floats) -> Floats:
-        """Bring controls (k, 2) into the kernel frame of a space."""
+        """Convert controls (k, 2) to the kernel frame of a space."""
         return controls * (1.0 / space.scale, space.scale)
 
     def controls_from_kernel(self, space: Space, controls: Floats) -> Floats:
-        """Bring controls (k, 2) out of the kernel frame of a space."""
+        """Convert controls (k, 2) from the kernel frame of a space."""
         return controls * (space.scale, 1.0 / space.scale)
 
 
-def _turn(space: Space) -> float:
-    """Angle by which directions turn on their way into the kernel frame."""
+def _yaw(space: Space) -> float:
+    """Angle [rad] by which directions turn when they are converted to the kernel frame."""
     x, y = vectors_to_kernel(space, np.array([1.0, 0.0]))
     return math.atan2(y, x)
 
@@ -155,6 +128,7 @@ def _turn(space: Space) -> float:
 @move.register(CarData)
 @kernel
 def _move(system, state, control, duration, end):
+    """Move along an arc."""
     way = duration * (state[SPEED] + duration * control[0] / 2.0)
     arc = Arc(state[:HEADING], state[HEADING], control[1])
     x, y = at(coordinate(arc, 0), way), at(coordinate(arc, 1), way)
@@ -166,7 +140,7 @@ def _move(system, state, control, duration, end):
 @contact.register(CarData)
 @kernel
 def _contact(system, space, state, control, duration):
-    """Follow the arc to where the speed changes its sign, if it does, and back from there."""
+    """Find the contact before the speed changes its sign, or on the way back from there."""
     speed, acceleration = state[SPEED], control[0]
     rest = -speed / acceleration if acceleration != 0.0 else math.inf
     if not 0.0 < rest < duration:
@@ -182,7 +156,7 @@ def _contact(system, space, state, control, duration):
 
 @kernel
 def _one_way(space, state, control, duration):
-    """First contact while the speed keeps its sign; the arc is followed by its length."""
+    """Find the contact while the speed keeps its sign: the arc length to it, then the time."""
     way = duration * (state[SPEED] + duration * control[0] / 2.0)
     heading = state[HEADING] if way >= 0.0 else state[HEADING] + math.pi
     curvature = math.copysign(control[1], control[1] * way)
@@ -200,11 +174,11 @@ def _one_way(space, state, control, duration):
 @kernel
 def _steer(system, state, position, velocity, weight, duration, control):
     """
-    Take the arc that leads through the desired position, as fast as the desired speed allows.
+    Steer along the arc through the desired position, at the desired speed.
 
-    The arc through a point ``d`` away at an angle ``b`` has curvature 2 sin(b) / d. Backwards
-    where the position lies behind. The speed wanted is the desired one, and no faster than what
-    brings the base there in one step.
+    The arc through a point ``d`` away at an angle ``b`` has curvature 2 sin(b) / d. The base
+    goes backwards where the position lies behind, and not so fast that it would pass the position
+    within the duration.
     """
     dx, dy = position[0] - state[X], position[1] - state[Y]
     ahead = dx * math.cos(state[HEADING]) + dy * math.sin(state[HEADING])
@@ -221,6 +195,7 @@ def _steer(system, state, position, velocity, weight, duration, control):
 @brake.register(CarData)
 @kernel
 def _brake(system, state, control):
+    """Brake along the heading."""
     control[0] = -math.copysign(system.max_acceleration, state[SPEED])
     control[1] = 0.0
     return abs(state[SPEED]) / system.max_acceleration
@@ -229,11 +204,13 @@ def _brake(system, state, control):
 @halt.register(CarData)
 @kernel
 def _halt(system, state):
+    """Set the speed to 0."""
     state[SPEED] = 0.0
 
 
 @velocity.register(CarData)
 @kernel
 def _velocity(system, state, out):
+    """Write the speed along the heading as a vector (2,)."""
     out[0] = state[SPEED] * math.cos(state[HEADING])
     out[1] = state[SPEED] * math.sin(state[HEADING])

@@ -1,49 +1,43 @@
 """
 The double integrator: a point that accelerates (paper, Section 5, kinematic planning).
 
-Under a constant acceleration it runs along a parabola. Speed is bounded as well, and both bounds
-are balls: with the velocities at both ends of a step within the limit, all between them are.
+Under a constant acceleration it moves along a parabola. Acceleration and speed are bounded, each
+by a ball: where the velocities at both ends of a step are within the limit, all between them are.
 """
 
 from dataclasses import dataclass
 import math
 from typing import NamedTuple
 
-from hnr_planner.core.checks import check_count, check_number, check_point, Floats
-from hnr_planner.core.errors import RequestError
+from hnr_planner.core.checks import check_count, Floats
 from hnr_planner.core.kernels.kernel import kernel
 from hnr_planner.core.lengths import norm
 from hnr_planner.core.spaces.curves.curve import first_exit_on_curve, Parabola
 from hnr_planner.core.spaces.space import Space
-from hnr_planner.core.systems.limits import check_limit
-from hnr_planner.core.systems.primitives import (
-    brake,
-    contact,
-    halt,
-    move,
-    moved,
-    steer,
-    velocity,
+from hnr_planner.core.systems.primitives import brake, contact, halt, move, steer, velocity
+from hnr_planner.core.systems.system import (
+    check_limit,
+    System,
+    vectors_from_kernel,
+    vectors_to_kernel,
 )
-from hnr_planner.core.systems.system import ROUNDING, vectors_from_kernel, vectors_to_kernel
 import numpy as np
-from numpy.typing import ArrayLike
 
-#: Part of a vector that has to be left across another for its direction to be known.
-UPRIGHT = 1e-6
-#: Nodes and weights on [0, 1] for the length of a piece of a parabola.
+#: A component across is told from rounding when it is longer than this fraction of the vector.
+ACROSS = 1e-6
+#: Nodes and weights on [-1, 1] of the quadrature for the length of a piece of a parabola.
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(16)
 
 
 class DoubleIntegratorData(NamedTuple):
-    """A compiled double integrator: its limits."""
+    """A compiled double integrator: its limits, in the kernel frame of a space."""
 
     max_acceleration: float
     max_speed: float
 
 
 @dataclass(frozen=True)
-class DoubleIntegrator:
+class DoubleIntegrator(System):
     """
     A point with a velocity, controlled by its acceleration.
 
@@ -71,12 +65,12 @@ class DoubleIntegrator:
 
     @property
     def state_dim(self) -> int:
-        """Numbers in a state."""
+        """Dimension of states."""
         return 2 * self.dim
 
     @property
     def control_dim(self) -> int:
-        """Numbers in a control."""
+        """Dimension of controls."""
         return self.dim
 
     @property
@@ -89,40 +83,19 @@ class DoubleIntegrator:
         """The compiled system in the caller's units."""
         return DoubleIntegratorData(self.max_acceleration, self.max_speed)
 
-    def check_state(self, name: str, state: ArrayLike) -> Floats:
-        """Return a state (2 dim,) within the speed limit, or raise RequestError."""
-        checked = check_point(name, state, self.state_dim)
-        speed = self.speed(checked)
-        if speed > self.max_speed * (1.0 + ROUNDING):
-            raise RequestError(
-                f'{name} must be no faster than max_speed, {self.max_speed:g} m/s, '
-                f'got {speed!r} m/s'
-            )
-        return checked
-
-    def propagate(self, state: ArrayLike, control: ArrayLike, duration: float) -> Floats:
-        """Return the state (2 dim,) after ``duration`` [s] under a constant acceleration."""
-        start = check_point('state', state, self.state_dim)
-        acceleration = check_point('control', control, self.control_dim)
-        return moved(self.data, start, acceleration, check_number('duration', duration, 0.0))
-
     def velocity(self, state: Floats) -> Floats:
-        """Return how a state moves: (dim,) [m/s]."""
+        """Return the velocity [m/s] of a state (2 dim,) as a vector (dim,)."""
         _, velocity = np.split(state, 2)
         return velocity
 
     def speed(self, state: Floats) -> float:
-        """Return the speed [m/s] of a state."""
+        """Return the speed [m/s] of a state (2 dim,)."""
         return math.hypot(*self.velocity(state))
 
     def lengths(self, states: Floats, controls: Floats, durations: Floats) -> Floats:
-        """Return how far steps go: (k,) [m], by 16 nodes of Gauss and Legendre."""
-        total, velocities = np.zeros(len(durations)), np.split(states, 2, axis=1)[1]
-        for node, weight in zip(_NODES, _WEIGHTS, strict=True):
-            times = durations * (node + 1.0) / 2.0
-            now = velocities + times[:, np.newaxis] * controls
-            total += weight * np.linalg.norm(now, axis=1)
-        return durations / 2.0 * total
+        """Return how far states (k, 2 dim) go: (k,) [m], by Gauss-Legendre quadrature."""
+        lengths: Floats = _lengths(states, controls, durations)
+        return lengths
 
     def compiled(self, space: Space) -> DoubleIntegratorData:
         """Return the compiled system in the kernel frame of a space."""
@@ -130,29 +103,45 @@ class DoubleIntegrator:
         return DoubleIntegratorData(*limits)
 
     def to_kernel(self, space: Space, states: Floats) -> Floats:
-        """Bring states (..., 2 dim) into the kernel frame of a space."""
+        """Convert states (..., 2 dim) to the kernel frame of a space."""
         positions, velocities = np.split(states, 2, axis=-1)
         inside = space.to_kernel(positions), vectors_to_kernel(space, velocities)
         return np.concatenate(inside, axis=-1)
 
     def from_kernel(self, space: Space, states: Floats) -> Floats:
-        """Bring states (..., 2 dim) out of the kernel frame of a space."""
+        """Convert states (..., 2 dim) from the kernel frame of a space."""
         positions, velocities = np.split(states, 2, axis=-1)
         outside = space.from_kernel(positions), vectors_from_kernel(space, velocities)
         return np.concatenate(outside, axis=-1)
 
     def controls_to_kernel(self, space: Space, controls: Floats) -> Floats:
-        """Bring accelerations (k, dim) into the kernel frame of a space."""
+        """Convert accelerations (k, dim) to the kernel frame of a space."""
         return vectors_to_kernel(space, controls)
 
     def controls_from_kernel(self, space: Space, controls: Floats) -> Floats:
-        """Bring accelerations (k, dim) out of the kernel frame of a space."""
+        """Convert accelerations (k, dim) from the kernel frame of a space."""
         return vectors_from_kernel(space, controls)
+
+
+@kernel
+def _lengths(states, controls, durations):
+    """Integrate the speed over the durations (k,) of steps: (k,)."""
+    dim, lengths = controls.shape[1], np.empty(len(durations))
+    for k in range(len(durations)):
+        total = 0.0
+        for n in range(len(_NODES)):
+            time, squared = durations[k] * (_NODES[n] + 1.0) / 2.0, 0.0
+            for i in range(dim):
+                squared += (states[k, dim + i] + time * controls[k, i]) ** 2
+            total += _WEIGHTS[n] * math.sqrt(squared)
+        lengths[k] = durations[k] / 2.0 * total
+    return lengths
 
 
 @move.register(DoubleIntegratorData)
 @kernel
 def _move(system, state, control, duration, end):
+    """Move along a parabola."""
     dim = len(control)
     for i in range(dim):
         change = control[i] * duration
@@ -163,6 +152,7 @@ def _move(system, state, control, duration, end):
 @contact.register(DoubleIntegratorData)
 @kernel
 def _contact(system, space, state, control, duration):
+    """Find where the parabola leaves the space."""
     dim = len(control)
     return first_exit_on_curve(space, Parabola(state[:dim], state[dim:], control), duration)
 
@@ -171,10 +161,10 @@ def _contact(system, space, state, control, duration):
 @kernel
 def _steer(system, state, position, velocity, weight, duration, control):
     """
-    Choose the least |x' - x_d|^2 + weight^2 |v' - v_d|^2 after the duration.
+    Minimize |x' - x_d|^2 + weight^2 |v' - v_d|^2 after the duration.
 
-    The cost is isotropic in the acceleration, so that the best one within the limits is the point
-    of both balls nearest to the best one without limits.
+    The cost is isotropic in the acceleration, so the best one within the limits is the point of
+    both balls that is nearest to the best one without limits.
     """
     dim = len(control)
     half = duration * duration / 2.0
@@ -188,7 +178,7 @@ def _steer(system, state, position, velocity, weight, duration, control):
 
 @kernel
 def limit_acceleration(system, velocity, duration, control):
-    """Move ``control`` to the nearest point of two balls: accelerations, and speeds at the end."""
+    """Project an acceleration (dim,) to those within both limits, of speed after a duration."""
     dim, radius = len(control), system.max_speed / duration
     if norm(control) <= system.max_acceleration:
         within, beyond = True, _speed_after(velocity, duration, control) > system.max_speed
@@ -196,42 +186,42 @@ def limit_acceleration(system, velocity, duration, control):
         within, beyond = False, False
     if within and not beyond:
         return
-    wish = control.copy()
+    wanted = control.copy()
     _scale_to(control, system.max_acceleration)
     if not within and _speed_after(velocity, duration, control) <= system.max_speed:
         return
     offset = velocity / duration
     for i in range(dim):
-        control[i] = wish[i] + offset[i]
+        control[i] = wanted[i] + offset[i]
     _scale_to(control, radius)
     for i in range(dim):
         control[i] -= offset[i]
     if norm(control) <= system.max_acceleration:
         return
-    _to_rim(system.max_acceleration, radius, offset, wish, control)
+    _nearest_on_both_spheres(system.max_acceleration, radius, offset, wanted, control)
 
 
 @kernel
-def _to_rim(limit, radius, offset, wish, control):
-    """Write the point nearest to ``wish`` where |a| = limit meets |a + offset| = radius."""
-    apart = norm(offset)
-    along = (radius * radius - limit * limit - apart * apart) / (2.0 * apart * apart)
-    height = math.sqrt(max(limit * limit - (along * apart) ** 2, 0.0))
+def _nearest_on_both_spheres(limit, radius, offset, wanted, control):
+    """Write the point nearest to ``wanted`` where |a| = limit meets |a + offset| = radius."""
+    gap = norm(offset)
+    along = (radius * radius - limit * limit - gap * gap) / (2.0 * gap * gap)
+    height = math.sqrt(max(limit * limit - (along * gap) ** 2, 0.0))
     dot = 0.0
-    for i in range(len(wish)):
-        dot += wish[i] * offset[i]
-    across = wish - (dot / (apart * apart)) * offset
+    for i in range(len(wanted)):
+        dot += wanted[i] * offset[i]
+    across = wanted - (dot / (gap * gap)) * offset
     length = norm(across)
-    # Where next to nothing is left of it, rounding is: the middle of the rim is as near.
-    upright = length > UPRIGHT * norm(wish)
-    for i in range(len(wish)):
-        sideways = across[i] / length * height if upright else 0.0
+    # A component that is mere rounding gives no direction: the middle is as near as any point.
+    is_known = length > ACROSS * norm(wanted)
+    for i in range(len(wanted)):
+        sideways = across[i] / length * height if is_known else 0.0
         control[i] = along * offset[i] + sideways
 
 
 @kernel
 def _scale_to(vector, length):
-    """Shorten ``vector`` to ``length`` where it is longer."""
+    """Scale a vector (dim,) down to ``length`` where it is longer."""
     before = norm(vector)
     if before > length:
         for i in range(len(vector)):
@@ -240,6 +230,7 @@ def _scale_to(vector, length):
 
 @kernel
 def _speed_after(velocity, duration, control):
+    """Return the speed after a duration under an acceleration (dim,)."""
     squared = 0.0
     for i in range(len(velocity)):
         squared += (velocity[i] + duration * control[i]) ** 2
@@ -249,6 +240,7 @@ def _speed_after(velocity, duration, control):
 @brake.register(DoubleIntegratorData)
 @kernel
 def _brake(system, state, control):
+    """Accelerate against the velocity."""
     dim = len(control)
     speed = norm(state[dim:])
     for i in range(dim):
@@ -259,6 +251,7 @@ def _brake(system, state, control):
 @halt.register(DoubleIntegratorData)
 @kernel
 def _halt(system, state):
+    """Set the velocity to 0."""
     half = len(state) // 2
     state[half:] = 0.0
 
@@ -266,5 +259,6 @@ def _halt(system, state):
 @velocity.register(DoubleIntegratorData)
 @kernel
 def _velocity(system, state, out):
+    """Write the velocity (dim,)."""
     for i in range(len(out)):
         out[i] = state[len(out) + i]

@@ -1,8 +1,9 @@
 """
-The primitives of systems: what planners ask of a compiled one.
+The primitives of systems: the functions of a compiled system that planners call.
 
-A compiled system is a NamedTuple of its limits, in the kernel frame of a space, and registers a
-kernel of its own for each primitive. Its states are arrays, position first.
+A compiled system is a NamedTuple of its limits, in the kernel frame of a space, and registers its
+own kernel for each primitive. A state is an array (state_dim,) that begins with the position
+(dim,); a control is an array (control_dim,) that is constant for a duration [s].
 """
 
 from typing import Any
@@ -10,12 +11,13 @@ from typing import Any
 from hnr_planner.core.kernels.borrowed import borrowed
 from hnr_planner.core.kernels.dispatch import dispatched
 from hnr_planner.core.kernels.kernel import kernel
+import numpy as np
 
 
 @dispatched
 @kernel
 def move(system: Any, state: Any, control: Any, duration: float, end: Any) -> None:
-    """Write the ``end`` of ``duration`` under a constant control."""
+    """Write to ``end`` the state after ``duration`` under a constant control."""
     raise NotImplementedError
 
 
@@ -37,50 +39,45 @@ def steer(
     duration: float,
     control: Any,
 ) -> None:
-    """Write the control that brings the state nearest to a desired position and velocity."""
+    """Write the control that leads nearest to a desired position and velocity in a duration."""
     raise NotImplementedError
 
 
 @dispatched
 @kernel
 def brake(system: Any, state: Any, control: Any) -> float:
-    """Write the control that comes to rest soonest, and return how long that takes."""
+    """Write the control that brakes straight to rest, and return how long that takes."""
     raise NotImplementedError
 
 
 @dispatched
 @kernel
 def halt(system: Any, state: Any) -> None:
-    """Take all motion out of a state."""
+    """Set the velocity of a state to 0."""
     raise NotImplementedError
 
 
 @dispatched
 @kernel
 def velocity(system: Any, state: Any, out: Any) -> None:
-    """Write how a state moves: (dim,)."""
+    """Write the velocity of a state to a vector (dim,)."""
     raise NotImplementedError
 
 
 @kernel
-def moved(system, state, control, duration):
-    """Return the state after ``duration`` under a constant control: ``move`` for Python."""
-    end = state.copy()
-    move(system, state, control, duration, end)
-    return end
+def propagated(system, states, controls, durations):
+    """Return where states (k, state_dim) get to under controls (k, ...) in durations (k,)."""
+    ends = np.empty_like(states)
+    for k in range(len(durations)):
+        move(system, states[k], controls[k], durations[k], ends[k])
+    return ends
 
 
 @kernel
 def first_blocked_step(system, space, states, controls, durations):
-    """Index of the first step of a motion that meets the boundary; -1 when none does."""
+    """Return the index of the first step of a motion that is not free; -1 when all are."""
     system, space = borrowed(system), borrowed(space)
     for k in range(len(durations)):
         if contact(system, space, states[k], controls[k], durations[k]) <= durations[k]:
             return k
     return -1
-
-
-@kernel
-def first_contact(system, space, state, control, duration):
-    """Return what ``contact`` does, for Python."""
-    return contact(system, space, state, control, duration)

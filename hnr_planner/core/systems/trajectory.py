@@ -1,8 +1,12 @@
-"""A trajectory: what a system does over time."""
+"""A trajectory: the states of a system over time, and the controls that lead through them."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+import itertools
 
 from hnr_planner.core.checks import Floats
+from hnr_planner.core.errors import RequestError
+from hnr_planner.core.systems.primitives import propagated
 from hnr_planner.core.systems.system import System
 import numpy as np
 from numpy.typing import ArrayLike
@@ -16,7 +20,7 @@ class Trajectory:
     Attributes
     ----------
     system : System
-        What moves.
+        The robot.
     times : (m,)
         From 0 on [s], never decreasing.
     states : (m, state_dim)
@@ -32,6 +36,12 @@ class Trajectory:
     states: Floats
     controls: Floats
 
+    def __repr__(self) -> str:
+        return (
+            f'<Trajectory of a {type(self.system).__name__}: {self.duration:.6g} s, '
+            f'{len(self.controls)} steps>'
+        )
+
     @property
     def duration(self) -> float:
         """Time from the first state to the last [s]."""
@@ -39,12 +49,12 @@ class Trajectory:
 
     @property
     def positions(self) -> Floats:
-        """Positions (m, dim) at ``times``; the way between them is curved."""
+        """Positions (m, dim) at ``times``; the curve between them is not straight."""
         return self.states[:, : self.system.dim].copy()
 
     @property
     def length(self) -> float:
-        """Length of the way [m]."""
+        """Length of the curve [m]."""
         steps = self.states[:-1], self.controls, np.diff(self.times)
         return float(self.system.lengths(*steps).sum())
 
@@ -52,11 +62,46 @@ class Trajectory:
         """Return the states (k, state_dim) at times (k,) [s], those outside taken at the ends."""
         wanted = np.clip(np.atleast_1d(np.asarray(times, dtype=np.float64)), 0.0, self.duration)
         steps = np.searchsorted(self.times, wanted, side='right') - 1
-        states = np.empty((len(wanted), self.states.shape[1]))
-        for k, (step, t) in enumerate(zip(steps, wanted, strict=True)):
-            if step >= len(self.controls) or t == self.times[step]:
-                states[k] = self.states[step]
-            else:
-                after = t - self.times[step]
-                states[k] = self.system.propagate(self.states[step], self.controls[step], after)
+        states = self.states[steps]
+        inside = (steps < len(self.controls)) & (wanted > self.times[steps])
+        rows = steps[inside]
+        after = wanted[inside] - self.times[rows]
+        states[inside] = propagated(
+            self.system.data, self.states[rows], self.controls[rows], after
+        )
         return states
+
+
+def join_trajectories(trajectories: Sequence[Trajectory]) -> Trajectory:
+    """
+    Return trajectories of one system, one after the other, as one.
+
+    Parameters
+    ----------
+    trajectories : sequence of Trajectory
+        At least one. Each begins in the state that the one before ends in; one that takes no time
+        adds nothing.
+
+    Raises
+    ------
+    RequestError
+        When there are none, or one does not begin where the one before ends.
+
+    """
+    if not trajectories:
+        raise RequestError('trajectories must be at least one, got none')
+    for k, (one, other) in enumerate(itertools.pairwise(trajectories), 1):
+        if not np.array_equal(one.states[-1], other.states[0]):
+            raise RequestError(
+                f'trajectory {k} must begin in the state that the one before ends in, '
+                f'{one.states[-1].tolist()}, got {other.states[0].tolist()}'
+            )
+    moving = [each for each in trajectories if each.duration > 0.0] or [trajectories[0]]
+    begins = itertools.accumulate((each.duration for each in moving), initial=0.0)
+    times = [begin + each.times[1:] for begin, each in zip(begins, moving, strict=False)]
+    return Trajectory(
+        moving[0].system,
+        np.concatenate([[0.0], *times]),
+        np.concatenate([moving[0].states[:1], *(each.states[1:] for each in moving)]),
+        np.concatenate([each.controls for each in moving]),
+    )

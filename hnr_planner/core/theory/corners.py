@@ -46,7 +46,8 @@ def corners(space: Space) -> Corners:
     if isinstance(space, BoxSpace) and space.dim == 2:
         return Corners(np.array(list(itertools.product(*zip(*space.bounds, strict=True)))), none)
     if isinstance(space, PolytopeSpace) and space.dim == 2:
-        return Corners(_polytope_corners(space.data.normals, space.data.offsets), none)
+        corners = _polytope_corners(space.data.normals, space.data.offsets)
+        return Corners(space.from_kernel(corners), none)
     return Corners(none, none)
 
 

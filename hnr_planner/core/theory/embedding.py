@@ -45,5 +45,5 @@ def image_boundary(space: ShearedSpace, n_points: int) -> Floats:
     """Return points (n_points, 2) on the boundary of a sheared disc, counter-clockwise."""
     angle = np.arange(n_points) * (2.0 * math.pi / n_points)
     circle = np.stack([np.cos(angle), np.sin(angle)], axis=1)
-    radius, centre = space.data.radius, space.data.centre
+    radius, centre = space.data.radius, space.centre
     return space.image(centre + radius * circle)

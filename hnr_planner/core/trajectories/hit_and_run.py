@@ -2,7 +2,7 @@
 Hit-and-Run under a controller (paper, Section 5).
 
 The desired position is a uniform point of a random chord through the present position, the desired
-velocity uniform in the ball of velocities; from where the controller comes to, the next is drawn.
+velocity uniform in the ball of velocities. The next transition begins where the controller ended.
 """
 
 from dataclasses import dataclass
@@ -12,12 +12,8 @@ from hnr_planner.core.kernels.borrowed import borrowed
 from hnr_planner.core.kernels.kernel import kernel
 from hnr_planner.core.kernels.streams import Stream
 from hnr_planner.core.sampling.draws import draw_in_ball, hit_and_run_step
+from hnr_planner.core.trajectories.driven import drive, DrivenPlanner, DrivenSearch
 from hnr_planner.core.trajectories.problem import KinodynamicProblem
-from hnr_planner.core.trajectories.steps import (
-    drive,
-    DrivenPlanner,
-    DrivenSearch,
-)
 import numpy as np
 
 
@@ -50,7 +46,7 @@ class KinodynamicHitAndRunSearch(DrivenSearch):
 
 @kernel
 def _walk(problem, driving, rng, steps, n_rows, n_iterations):
-    """Walk on: (rows, transitions, steps tried, whether the goal is reached)."""
+    """Extend the chain: (rows, transitions, steps tried, whether the goal is reached)."""
     problem, rng, steps = borrowed(problem), borrowed(rng), borrowed(steps)
     geometric, n_steps = problem.geometric, 0
     dim = len(geometric.goal)

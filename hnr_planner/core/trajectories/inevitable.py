@@ -1,11 +1,12 @@
 """
-Collisions that cannot be avoided any more, proved from the stopping distance.
+Proof that a collision is inevitable, from the stopping distance.
 
 Whatever the control, the position at time ``t`` lies in the disc of radius ``a t^2 / 2`` around
 ``x + v t``, where ``a`` is the largest acceleration. On a grid the free cells that the robot may
-be in are followed from one slice of time to the next: those of the slice's discs that free cells
-join to the ones before. Once none is left, a collision has happened. In every space the bounds are
-walls: nobody stops before a wall that is nearer than the stopping distance ``v^2 / (2 a)``.
+be in are followed from one slice of time to the next: the cells that the disc of the slice
+touches, and that such cells connect to the ones before. Once none is left, a collision has
+happened. In every space the bounds are walls: no robot stops before a wall that is nearer than the
+stopping distance ``v^2 / (2 a)``.
 """
 
 import math
@@ -16,14 +17,28 @@ from hnr_planner.core.kernels.kernel import kernel
 from hnr_planner.core.spaces.grid.traversal import GridData
 import numpy as np
 
-#: Slices of the time after which every disc has grown over the place that it began at.
+#: Slices of the time after which the disc has grown over the position at the start.
 SLICES = 96
 
 
 def is_collision_inevitable(
     space: Any, bounds: tuple[Floats, Floats], x: Floats, v: Floats, acceleration: float
 ) -> bool:
-    """Say whether a collision is proved to come, in a compiled space; False is no promise."""
+    """
+    Return whether a collision is proved to come; False proves nothing.
+
+    Parameters
+    ----------
+    space : NamedTuple
+        The compiled space.
+    bounds : (dim,), (dim,)
+        The box around it.
+    x, v : (dim,)
+        Position and velocity.
+    acceleration : float
+        Largest acceleration in any direction. All in the kernel frame.
+
+    """
     lower, upper = bounds
     stop = x + v * np.abs(v) / (2.0 * acceleration)
     if (stop <= lower).any() or (stop >= upper).any():
@@ -31,22 +46,14 @@ def is_collision_inevitable(
     return isinstance(space, GridData) and _is_trapped(space.free_distance, x, v, acceleration)
 
 
-def compile_inevitable(space: Any) -> None:
-    """Compile the proof for a kind of space, on a robot at rest in the corner."""
-    if isinstance(space, GridData):
-        _is_trapped(space.free_distance, np.ones(2), np.zeros(2), 1.0)
-
-
 @kernel
 def _is_trapped(free_distance, x, v, acceleration):
-    """Follow the cells that the robot may be in, slice by slice."""
+    """Follow the cells that the robot may be in, slice by slice; return whether none is left."""
     rows, columns = free_distance.shape
     speed = math.hypot(v[0], v[1])
     duration = 2.0 * speed / acceleration / SLICES
-    here, stack = (
-        np.zeros((rows, columns), dtype=np.bool_),
-        np.empty((rows * columns, 2), np.int64),
-    )
+    reached = np.zeros((rows, columns), dtype=np.bool_)
+    stack = np.empty((rows * columns, 2), dtype=np.int64)
     cells = np.empty((rows * columns, 2), dtype=np.int64)
     cells[0, 0], cells[0, 1] = math.floor(x[1]), math.floor(x[0])
     n = 1
@@ -60,7 +67,7 @@ def _is_trapped(free_distance, x, v, acceleration):
             radius,
             cells,
             n,
-            here,
+            reached,
             stack,
         )
         if n == 0:
@@ -69,13 +76,13 @@ def _is_trapped(free_distance, x, v, acceleration):
 
 
 @kernel
-def _spread(free_distance, x, y, radius, cells, n, here, stack):
-    """Spread from those of ``n`` cells that a disc touches over the free cells that it touches."""
+def _spread(free_distance, x, y, radius, cells, n, reached, stack):
+    """Spread over free cells that a disc touches, from those of the ``n`` cells before."""
     waiting, found = 0, 0
     for k in range(n):
         if _touches(cells[k, 0], cells[k, 1], x, y, radius):
             stack[waiting] = cells[k]
-            here[cells[k, 0], cells[k, 1]] = True
+            reached[cells[k, 0], cells[k, 1]] = True
             waiting += 1
     while waiting > 0:
         waiting -= 1
@@ -83,18 +90,18 @@ def _spread(free_distance, x, y, radius, cells, n, here, stack):
         cells[found, 0], cells[found, 1] = row, column
         found += 1
         for i, j in ((row, column - 1), (row, column + 1), (row - 1, column), (row + 1, column)):
-            if free_distance[i, j] > 0 and not here[i, j] and _touches(i, j, x, y, radius):
-                here[i, j] = True
+            if free_distance[i, j] > 0 and not reached[i, j] and _touches(i, j, x, y, radius):
+                reached[i, j] = True
                 stack[waiting, 0], stack[waiting, 1] = i, j
                 waiting += 1
     for k in range(found):
-        here[cells[k, 0], cells[k, 1]] = False
+        reached[cells[k, 0], cells[k, 1]] = False
     return found
 
 
 @kernel
 def _touches(row, column, x, y, radius):
-    """Say whether a disc touches a cell."""
+    """Return whether a disc touches a cell."""
     dx = max(column - x, max(x - column - 1.0, 0.0))
     dy = max(row - y, max(y - row - 1.0, 0.0))
     return dx * dx + dy * dy <= radius * radius

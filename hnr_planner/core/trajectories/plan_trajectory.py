@@ -1,276 +1,213 @@
 """
-``plan`` for a system: one request, one answer with a trajectory.
+``plan_trajectory``: find a trajectory for one request.
 
-As for a robot without inertia: the planners search and count, and here the request is checked, the
-clock owned, a cancellation heard and the end told in words.
+The planners search and count. ``plan_trajectory`` validates the request, enforces its limits and
+builds the result.
 """
 
-from dataclasses import dataclass
 import math
-import time
 from typing import Any
 
-from hnr_planner.core.checks import check_number, Floats
-from hnr_planner.core.errors import RequestError
-from hnr_planner.core.kernels.streams import stream
-from hnr_planner.core.planning.attempts import SEARCH, search_until_free, SHORTEN
+from hnr_planner.core.cancellation import Event
+from hnr_planner.core.kernels.clock import working_time
 from hnr_planner.core.planning.limits import Budget
-from hnr_planner.core.planning.request import check_request, outcome_without_search, Request
-from hnr_planner.core.planning.result import FirstSolution, PlannerStatus, PlanResult
-from hnr_planner.core.spaces.curves.curve import knows_curves
-from hnr_planner.core.spaces.primitives import kind_of
+from hnr_planner.core.planning.request import check_effort, Effort
+from hnr_planner.core.planning.result import FirstSolution, PlannerStatus
 from hnr_planner.core.spaces.space import Space
-from hnr_planner.core.systems.double_integrator import DoubleIntegrator
-from hnr_planner.core.systems.primitives import first_blocked_step
-from hnr_planner.core.systems.system import System, vectors_to_kernel
+from hnr_planner.core.systems.system import System
 from hnr_planner.core.systems.trajectory import Trajectory
-from hnr_planner.core.trajectories.connect import compile_connect, KinodynamicConnect
-from hnr_planner.core.trajectories.inevitable import (
-    compile_inevitable,
-    is_collision_inevitable,
+from hnr_planner.core.trajectories.attempt import Found, search_trajectory, shortened
+from hnr_planner.core.trajectories.problem import Boundary, KinodynamicPlanner, KinodynamicSearch
+from hnr_planner.core.trajectories.reduce import STEPS_MAX
+from hnr_planner.core.trajectories.request import (
+    check_kinodynamic_request,
+    check_optimization,
+    KinodynamicRequest,
+    outcome_before_search,
 )
-from hnr_planner.core.trajectories.problem import (
-    is_at_goal,
-    KinodynamicPlanner,
-    KinodynamicProblem,
-    KinodynamicSearch,
-    Motion,
-)
-from hnr_planner.core.trajectories.registry import make_kinodynamic_planner
-from hnr_planner.core.trajectories.shorten import shorten_in_time
-from hnr_planner.core.trajectories.steps import can_brake
+from hnr_planner.core.trajectories.result import TrajectoryResult
 import numpy as np
 from numpy.typing import ArrayLike
 
-#: Proposals for a shorter motion: for every request, for each of ``optimize_iterations``, and
-#: between two looks at the clock.
-PROPOSALS, PROPOSALS_AGAIN, PROPOSALS_IN_A_BATCH = 2000, 10000, 200
 
-
-@dataclass(frozen=True)
-class KinodynamicRequest:
-    """
-    A request whose numbers are clean.
-
-    Attributes
-    ----------
-    place : Request
-        The same for a robot without inertia.
-    system : System
-        What moves.
-    start : (state_dim,)
-        Caller's frame.
-    planner : KinodynamicPlanner
-        Who searches.
-    problem : KinodynamicProblem
-        The same in the kernel frame.
-
-    """
-
-    geometric: Request
-    system: System
-    start: Floats
-    planner: KinodynamicPlanner
-    problem: KinodynamicProblem
-
-
-def check_kinodynamic_request(
+def plan_trajectory(
     space: Space,
+    system: System,
     start: ArrayLike,
     goal: ArrayLike,
-    system: System,
     *,
-    algorithm: Any,
-    settings: dict[str, Any],
-    goal_radius: float,
-    goal_speed: float,
-    simplify: bool,
-    seed: int | None,
-) -> KinodynamicRequest:
-    """Return the request that a caller's arguments make, or raise RequestError."""
-    if not isinstance(getattr(system, 'state_dim', None), int):
-        raise RequestError(f'system must be a system such as DoubleIntegrator(), got {system!r}')
-    if system.dim != space.dim:
-        raise RequestError(
-            f'system must be of the dimension of the space, {space.dim}, got {system.dim}'
-        )
-    if not knows_curves(space.data):
-        raise RequestError(
-            f'system must be None in a {type(space).__name__}: it does not know where curves '
-            'leave it'
-        )
-    state = system.check_state('start', start)
-    planner = make_kinodynamic_planner(algorithm, settings, system)
-    speed = check_number('goal_speed', goal_speed, 0.0)
-    geometric = check_request(
-        space, state[: system.dim], goal, goal_radius, 'auto', {}, simplify, seed
-    )
-    for name, value in (('goal_radius', geometric.goal_radius), ('goal_speed', speed)):
-        if planner.samples_goal and value == 0.0:
-            raise RequestError(
-                f'{name} must be above 0 for {planner.name}, whose states never lie exactly at '
-                'the goal, got 0.0'
-            )
-    problem = KinodynamicProblem(
-        geometric.problem,
-        system.compiled(space),
-        system.to_kernel(space, state),
-        speed / space.scale,
-    )
-    return KinodynamicRequest(geometric, system, state, planner, problem)
+    algorithm: str | KinodynamicPlanner = 'auto',
+    goal_radius: float = 0.0,
+    goal_speed: float = math.inf,
+    boundary: Boundary = 'forbidden',
+    time_limit: float = 1.0,
+    max_iterations: int | None = None,
+    seed: int | None = None,
+    simplify: bool | None = None,
+    optimize_for: float = 0.0,
+    optimize_iterations: int = 0,
+    cancel: Event | None = None,
+    **settings: Any,
+) -> TrajectoryResult:
+    """
+    Find a free trajectory of a system.
 
+    Parameters
+    ----------
+    space : Space
+        Where the trajectory has to be free.
+    system : System
+        The robot, such as ``DoubleIntegrator(max_acceleration=1.0, max_speed=1.0)``.
+    start : (state_dim,)
+        State of the system in the caller's frame: position, and how it moves.
+    goal : (dim,)
+        Position to reach, in the caller's frame [m].
+    algorithm : str or planner
+        A name of ``KINODYNAMIC_ALGORITHMS`` or a planner value such as
+        ``KinodynamicRRT(time_step=0.2)``. 'auto' is ``kinodynamic_connect`` for a
+        ``DoubleIntegrator``, ``kinodynamic_rrt`` for other systems.
+    goal_radius : float
+        Above 0 the trajectory ends within this distance [m] of the goal; at 0 exactly at the goal,
+        which ``kinodynamic_connect`` alone can do.
+    goal_speed : float
+        Largest speed at the end [m/s]; 0, at rest, ``kinodynamic_connect`` alone can do.
+    boundary : 'forbidden' or 'inelastic'
+        What the boundary of the space does. Forbidden: it is never met, and the end of the
+        trajectory can be braked straight to rest before it; a start whose collision can be proved
+        is an INEVITABLE_COLLISION. Inelastic (the paper's): it stops the robot at once, which
+        goes on from there, and trajectories may use that. A planner value brings its own.
+    time_limit : float
+        Seconds for the whole call, inf for no limit. Compilation does not count.
+    max_iterations : int, optional
+        Transitions allowed for one search.
+    seed : int, optional
+        Fresh when left out; the result names the one used.
+    simplify : bool, optional
+        Whether the trajectory is shortened in time. Left out: where that can be done, for a
+        ``DoubleIntegrator``; and one of more than 10,000 steps that cannot be shortened is
+        refused. False: the trajectory is returned as it was found, however long it is.
+    optimize_for : float
+        For so many seconds of the call, within the time limit, the trajectory is shortened
+        further.
+    optimize_iterations : int
+        How many more rounds of shortening to run; together with ``optimize_for`` whichever ends
+        first.
+    cancel : threading.Event, optional
+        Ends the call once it is set.
+    **settings
+        Settings of the planner that ``algorithm`` names.
 
-def plan_motion(
-    request: KinodynamicRequest,
-    seconds: float,
-    transitions: float,
-    improve_seconds: float,
-    improve_rounds: int,
-    cancel: Any,
-) -> PlanResult:
-    """Answer a request for a system; arguments as of ``plan``, checked."""
-    _compile(request)
-    began = time.perf_counter()
-    limits = Budget(began + seconds, transitions, cancel)
-    known = _without_search(request)
+    Returns
+    -------
+    TrajectoryResult
+        Not finding a trajectory is a status, never an exception.
+
+    Raises
+    ------
+    RequestError
+        When an argument is malformed or does not go with another; the message names the value and
+        the rule.
+
+    """
+    effort = check_effort(
+        time_limit=time_limit,
+        max_iterations=max_iterations,
+        optimize_for=optimize_for,
+        optimize_iterations=optimize_iterations,
+        cancel=cancel,
+    )
+    request = check_kinodynamic_request(
+        space,
+        system,
+        start,
+        goal,
+        algorithm=algorithm,
+        settings=settings,
+        goal_radius=goal_radius,
+        goal_speed=goal_speed,
+        boundary=boundary,
+        simplify=simplify,
+        seed=seed,
+    )
+    check_optimization(request, effort)
+
+    began = working_time()
+    budget = effort.budget(began)
+    interrupted: tuple[PlannerStatus, str] | None = PlannerStatus.TIMEOUT, ''
+    known = budget.within(lambda: outcome_before_search(request), interrupted)
+    if known is interrupted:
+        status = budget.stop() or PlannerStatus.TIMEOUT
+        known = status, status.value
     if known is not None:
-        return _answer(request, *known, limits, began)
-    status, search, found = _search(request, limits)
-    if found is None:
-        spent = f'{search.iterations} transitions, {time.perf_counter() - began:.3g} s'
-        return _answer(request, status, f'{status.value} ({spent})', None, limits, began, search)
-    motion, trajectory = found
-    first = FirstSolution(time.perf_counter() - began, trajectory.length)
-    if isinstance(request.system, DoubleIntegrator) and request.geometric.simplify:
-        until = began + (improve_seconds or math.inf)
-        rounds = improve_rounds if improve_rounds or not improve_seconds else math.inf
-        improving = Budget(min(limits.deadline, until), cancel=cancel)
-        proposals = PROPOSALS + PROPOSALS_AGAIN * rounds
-        trajectory = _shortened(request, motion, trajectory, proposals, improving)
-        limits.cut = limits.cut or improving.cut
+        return _result(request, *known, _stay(request, known[0]), budget, began)
+    return _result_of_search(request, effort, budget, began)
+
+
+def _stay(request: KinodynamicRequest, status: PlannerStatus) -> Trajectory | None:
+    """Return the trajectory that stays at the start where that is a solution: one step of 0 s."""
+    if status is not PlannerStatus.SOLVED:
+        return None
+    control = np.zeros((1, request.system.control_dim))
+    return Trajectory(request.system, np.zeros(2), np.stack([request.start] * 2), control)
+
+
+def _result_of_search(
+    request: KinodynamicRequest, effort: Effort, budget: Budget, began: float
+) -> TrajectoryResult:
+    """Search, and shorten what was found."""
+    status, search, found = search_trajectory(request, budget, began)
+    if found is None or found.trajectory is None:
+        if found is not None:
+            status = budget.stop() or PlannerStatus.ITERATION_LIMIT
+        message = _failure(status, search, found, working_time() - began)
+        return _result(request, status, message, None, budget, began, search)
+    trajectory = found.trajectory
+    if request.shortens:
+        trajectory = shortened(request, found.motion, trajectory, effort, budget, began)
     message = (
         f'trajectory of {trajectory.duration:.6g} s with {len(trajectory.controls)} steps after '
         f'{search.iterations} transitions'
     )
-    return _answer(request, status, message, trajectory, limits, began, search, first)
+    return _result(request, status, message, trajectory, budget, began, search, found.first)
 
 
-def _without_search(
-    request: KinodynamicRequest,
-) -> tuple[PlannerStatus, str, Trajectory | None] | None:
-    """Say how a request ends that needs no search, and why; None for one that does."""
-    known = outcome_without_search(request.geometric)
-    if known is not None and known[0] is not PlannerStatus.SOLVED:
-        return *known, None
-    problem = request.problem
-    if is_at_goal(problem, problem.start):
-        stay = np.zeros((1, request.system.control_dim))
-        there = Trajectory(request.system, np.zeros(2), np.stack([request.start] * 2), stay)
-        return PlannerStatus.SOLVED, 'start lies in the goal region', there
-    if request.planner.boundary == 'forbidden' and _cannot_stop(request):
-        return (
-            PlannerStatus.INEVITABLE_COLLISION,
-            f'start moves at {request.system.speed(request.start):g} m/s and can neither stop '
-            'before the boundary nor turn away from it',
-            None,
-        )
-    return None
-
-
-def _cannot_stop(request: KinodynamicRequest) -> bool:
-    """Say whether it is proved that the start runs into the boundary."""
-    problem = request.problem
-    if can_brake(problem, problem.start, request.system.control_dim):
-        return False
-    geometric, velocity = problem.geometric, request.system.velocity(request.start)
-    return is_collision_inevitable(
-        geometric.space,
-        (geometric.lower, geometric.upper),
-        geometric.start,
-        vectors_to_kernel(request.geometric.space, velocity),
-        request.system.largest_acceleration / geometric.scale,
+def _failure(
+    status: PlannerStatus, search: KinodynamicSearch, found: Found | None, seconds: float
+) -> str:
+    """Return a description of how a search failed, or why what it found is refused."""
+    spent = f'{search.iterations} transitions, {seconds:.3g} s'
+    if found is None:
+        return f'{status.value} ({spent})'
+    steps, duration = len(found.motion.durations), float(found.motion.durations.sum())
+    return (
+        f'the motion that was found takes {duration:.6g} s in {steps} steps, more than the '
+        f'{STEPS_MAX} that a robot would drive, and was not shortened to fewer ({spent})'
     )
 
 
-def _search(
-    request: KinodynamicRequest, limits: Budget
-) -> tuple[PlannerStatus, KinodynamicSearch, tuple[Motion, Trajectory] | None]:
-    """Search for a motion that is free in the caller's coordinates too, as ``plan`` does."""
-
-    def start(salt: int) -> KinodynamicSearch:
-        return request.planner.start(request.problem, request.geometric.stream(0, SEARCH, salt))
-
-    def free_motion(search: KinodynamicSearch) -> tuple[Motion, Trajectory] | None:
-        motion = search.motion
-        trajectory = _in_caller_s_frame(request, motion)
-        return (motion, trajectory) if is_free(request, trajectory) else None
-
-    return search_until_free(start, free_motion, limits)
-
-
-def _shortened(
-    request: KinodynamicRequest,
-    motion: Motion,
-    trajectory: Trajectory,
-    proposals: float,
-    limits: Budget,
-) -> Trajectory:
-    """Return the trajectory made shorter by so many proposals within limits, if it is free."""
-    rng, left = request.geometric.stream(0, SHORTEN), proposals
-    while left > 0 and limits.stop() is None:
-        batch = int(min(left, PROPOSALS_IN_A_BATCH))
-        motion = shorten_in_time(request.problem, motion, rng, batch)
-        left -= batch
-    shorter = _in_caller_s_frame(request, motion)
-    return shorter if is_free(request, shorter) else trajectory
-
-
-def _in_caller_s_frame(request: KinodynamicRequest, motion: Motion) -> Trajectory:
-    """Trajectory of a motion found in the kernel frame; its ends are the caller's own numbers."""
-    system, space = request.system, request.geometric.space
-    states = system.from_kernel(space, motion.states)
-    states[0] = request.start
-    if motion.states[-1, : system.dim].tolist() == request.problem.geometric.goal.tolist():
-        states[-1, : system.dim] = request.geometric.goal
-    times = np.append(0.0, np.cumsum(motion.durations))
-    return Trajectory(system, times, states, system.controls_from_kernel(space, motion.controls))
-
-
-def is_free(request: KinodynamicRequest, trajectory: Trajectory) -> bool:
-    """Say whether no step of a trajectory meets the boundary."""
-    system, space = request.system, request.geometric.space
-    step = first_blocked_step(
-        request.problem.system,
-        space.data,
-        system.to_kernel(space, trajectory.states),
-        system.controls_to_kernel(space, trajectory.controls),
-        np.diff(trajectory.times),
-    )
-    return bool(step < 0)
-
-
-def _answer(
+def _result(
     request: KinodynamicRequest,
     status: PlannerStatus,
     message: str,
     trajectory: Trajectory | None,
-    limits: Budget,
+    budget: Budget,
     began: float,
     search: KinodynamicSearch | None = None,
     first: FirstSolution | None = None,
-) -> PlanResult:
-    """Return the answer; one without a search has the start as its only sample, if it is free."""
+) -> TrajectoryResult:
+    """Build the result; without a search the start is its only sample, where it is a solution."""
     space, dim = request.geometric.space, request.system.dim
     length = math.inf if trajectory is None else trajectory.length
     if search is not None:
         samples, parents = space.from_kernel(search.samples), search.parents.copy()
         samples[0] = request.geometric.start
     else:
-        free = 0 if trajectory is None else 1
-        samples, parents = np.tile(request.geometric.start, (free, 1)), np.full(free, -1)
+        n_samples = 0 if trajectory is None else 1
+        samples = np.tile(request.geometric.start, (n_samples, 1))
+        parents = np.full(n_samples, -1)
     if trajectory is not None and first is None:
-        first = FirstSolution(time.perf_counter() - began, length)
-    return PlanResult(
+        first = FirstSolution(working_time() - began, length, trajectory.positions)
+    return TrajectoryResult(
         status=status,
         message=message,
         planner=request.planner.name,
@@ -280,38 +217,9 @@ def _answer(
         parents=parents,
         iterations=0 if search is None else search.iterations,
         counts={} if search is None else search.counts,
-        elapsed=time.perf_counter() - began,
+        elapsed=working_time() - began,
         seed=request.geometric.seed,
-        cut_by_time=limits.cut,
+        cut_by_time=budget.cut,
         first_solution=first,
         trajectory=trajectory,
     )
-
-
-_compiled: set[tuple[Any, ...]] = set()
-
-
-def _compile(request: KinodynamicRequest) -> None:
-    """Compile, once for each kind of space, planner and system, before any clock runs."""
-    system, geometric = request.system, request.problem.geometric
-    kinds = kind_of(geometric.space), type(request.planner), type(request.problem.system)
-    if kinds in _compiled:
-        return
-    # Nobody has looked at start and goal yet, which may lie anywhere: the bounds stand for them.
-    rest = np.append(geometric.lower, np.zeros(system.state_dim - system.dim))
-    bounded = geometric._replace(start=geometric.lower, goal=geometric.upper)
-    problem = request.problem._replace(geometric=bounded, start=rest)
-    outcome_without_search(request.geometric)
-    is_at_goal(problem, rest)
-    can_brake(problem, rest, system.control_dim)
-    compile_inevitable(geometric.space)
-    search = request.planner.start(problem, stream(0))
-    for _ in range(2):
-        search.advance(0)
-    if isinstance(request.planner, KinodynamicConnect):
-        compile_connect(problem)
-    motion = Motion(np.zeros(1), np.stack([rest, rest]), np.zeros((1, system.control_dim)))
-    if isinstance(request.system, DoubleIntegrator):
-        shorten_in_time(problem, motion, stream(0), 0)
-    is_free(request, _in_caller_s_frame(request, motion))
-    _compiled.add(kinds)

@@ -1,8 +1,9 @@
 """
-What a kinodynamic planner is: like every planner, but its search ends with a motion.
+Planning problems for systems, and the interface of their planners and searches.
 
-A planner is a frozen dataclass whose fields are its settings, its ``start`` gives a search, and
-``advance`` counts transitions. All arrays are in the space's kernel frame.
+A planner is a frozen dataclass whose fields are its settings; its ``start`` gives a search, and
+``advance`` counts transitions, as for paths; but a search ends with a motion. All arrays are in
+the kernel frame of the space.
 """
 
 from typing import Any, Literal, NamedTuple, Protocol, TypeAlias
@@ -15,9 +16,11 @@ from hnr_planner.core.planning.planner import Problem, Search
 from hnr_planner.core.systems.primitives import velocity
 import numpy as np
 
-#: What the boundary does: it stops the robot, which goes on from there, or it must not be met.
-Boundary: TypeAlias = Literal['inelastic', 'forbidden']
-BOUNDARIES: tuple[Boundary, ...] = ('inelastic', 'forbidden')
+#: What the boundary does: it must not be met, or it stops the robot, which goes on from there.
+Boundary: TypeAlias = Literal['forbidden', 'inelastic']
+BOUNDARIES: tuple[Boundary, ...] = ('forbidden', 'inelastic')
+#: Shortest step of a motion [s]; twice the shortest of a trajectory, whose times are rounded sums.
+SHORTEST_STEP = 2e-9
 
 
 class KinodynamicProblem(NamedTuple):
@@ -26,8 +29,8 @@ class KinodynamicProblem(NamedTuple):
 
     Attributes
     ----------
-    place : Problem
-        Where to go from and to, as for a robot without inertia.
+    geometric : Problem
+        The problem for a point without inertia.
     system : NamedTuple
         The compiled system.
     start : (state_dim,)
@@ -44,7 +47,7 @@ class KinodynamicProblem(NamedTuple):
 
 
 class Motion(NamedTuple):
-    """States (m, state_dim), and the control of each step (m - 1, control_dim) for its time."""
+    """Durations (m - 1,) and controls (m - 1, control_dim) of steps; states (m, state_dim)."""
 
     durations: Floats
     states: Floats
@@ -56,7 +59,10 @@ class KinodynamicSearch(Search, Protocol):
 
     @property
     def motion(self) -> Motion:
-        """Return the motion of a solved search."""
+        """Motion of a solved search, as it was found."""
+
+    def draft(self, motion: Motion) -> Motion:
+        """Return the motion to begin shortening with: ``motion``, or a better one it knows."""
 
 
 class KinodynamicPlanner(Protocol):
@@ -72,7 +78,7 @@ class KinodynamicPlanner(Protocol):
 
     @property
     def samples_goal(self) -> bool:
-        """Whether it is only by chance that a state lies in the goal region."""
+        """Whether a state lies in the goal region by chance only."""
 
     def start(self, problem: KinodynamicProblem, rng: Stream) -> KinodynamicSearch:
         """Start a search."""
@@ -80,7 +86,7 @@ class KinodynamicPlanner(Protocol):
 
 @kernel
 def is_at_goal(problem, state):
-    """Say whether a state lies in the goal region and is slow enough for it."""
+    """Return whether a state lies in the goal region and is slow enough for it."""
     geometric, dim = problem.geometric, len(problem.geometric.goal)
     if distance(state[:dim], geometric.goal) > geometric.goal_radius:
         return False
@@ -89,7 +95,7 @@ def is_at_goal(problem, state):
 
 @kernel
 def speed_of(system, state, dim):
-    """Speed of a state."""
+    """Return the speed of a state (state_dim,)."""
     v = np.empty(dim)
     velocity(system, state, v)
     return norm(v)

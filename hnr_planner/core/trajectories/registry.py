@@ -1,49 +1,65 @@
-"""Kinodynamic planners by name."""
+"""
+The planners of ``plan_trajectory``, each listed once.
 
+Names and descriptions are known without importing any planner: this module needs neither NumPy nor
+the compiler.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
 from typing import Any
 
-from hnr_planner.core.errors import RequestError
-from hnr_planner.core.planning.registry import make_planner
-from hnr_planner.core.systems.double_integrator import DoubleIntegrator
-from hnr_planner.core.systems.system import System
-from hnr_planner.core.trajectories.connect import KinodynamicConnect
-from hnr_planner.core.trajectories.hit_and_run import KinodynamicHitAndRun
-from hnr_planner.core.trajectories.problem import KinodynamicPlanner
-from hnr_planner.core.trajectories.rrt import KinodynamicRRT
+from hnr_planner.core.planning.registry import PlannerEntry
 
-_KINDS = (KinodynamicConnect, KinodynamicHitAndRun, KinodynamicRRT)
+_FOLDER = 'hnr_planner.core.trajectories'
+
+#: The planners of ``plan_trajectory``, but for 'auto', which depends on the system.
+KINODYNAMIC_ENTRIES = (
+    PlannerEntry(
+        'kinodynamic_connect',
+        f'{_FOLDER}.connect',
+        'KinodynamicConnect',
+        'trees of Hit-and-Run steps find a path, which is driven and shortened in time',
+    ),
+    PlannerEntry(
+        'kinodynamic_hit_and_run',
+        f'{_FOLDER}.hit_and_run',
+        'KinodynamicHitAndRun',
+        "the paper's Hit-and-Run: one chain, driven to random positions and velocities",
+    ),
+    PlannerEntry(
+        'kinodynamic_rrt',
+        f'{_FOLDER}.rrt',
+        'KinodynamicRRT',
+        "the paper's RRT: a tree, driven from its nearest vertex to random states",
+    ),
+)
+#: What 'auto' is, in one line.
+AUTO_SUMMARY = 'kinodynamic_connect for a double integrator, kinodynamic_rrt for other systems'
+
+#: Names that ``plan_trajectory`` takes.
+KINODYNAMIC_ALGORITHMS = ('auto', *(entry.name for entry in KINODYNAMIC_ENTRIES))
+
+
+class _Classes(Mapping[str, type[Any]]):
+    """The classes of planners by name; each is imported when it is asked for."""
+
+    def __init__(self, entries: tuple[PlannerEntry, ...]) -> None:
+        self._entries = {entry.name: entry for entry in entries}
+
+    def __getitem__(self, name: str) -> type[Any]:
+        return self._entries[name].load()
+
+    def __contains__(self, name: object) -> bool:
+        return name in self._entries
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._entries)
+
+    def __len__(self) -> int:
+        return len(self._entries)
+
 
 #: Planners for systems, by name.
-KINODYNAMIC_PLANNERS: dict[str, type[Any]] = {kind.name: kind for kind in _KINDS}
-
-#: Names that ``plan`` takes beside a system.
-KINODYNAMIC_ALGORITHMS = ('auto', *KINODYNAMIC_PLANNERS)
-
-
-def make_kinodynamic_planner(
-    algorithm: Any, settings: dict[str, Any], system: System
-) -> KinodynamicPlanner:
-    """
-    Return the planner that ``algorithm`` means for a system, likewise built with ``settings``.
-
-    Raises
-    ------
-    RequestError
-        As ``make_planner``, or when the planner is none for this system.
-
-    """
-    connects = isinstance(system, DoubleIntegrator)
-    best = KinodynamicConnect if connects else KinodynamicRRT
-    planner: Any = make_planner(algorithm, settings, {'auto': best, **KINODYNAMIC_PLANNERS})
-    if not hasattr(planner, 'boundary'):
-        raise RequestError(f'{planner.name} plans without a system; one of {_names()} has to')
-    if isinstance(planner, KinodynamicConnect) and not connects:
-        raise RequestError(
-            f'{planner.name} connects states of a DoubleIntegrator only, got a '
-            f'{type(system).__name__}'
-        )
-    return planner
-
-
-def _names() -> str:
-    return ', '.join(KINODYNAMIC_ALGORITHMS)
+KINODYNAMIC_PLANNERS: Mapping[str, type[Any]] = _Classes(KINODYNAMIC_ENTRIES)

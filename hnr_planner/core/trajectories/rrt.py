@@ -2,7 +2,7 @@
 RRT under a controller (paper, Section 5; LaValle and Kuffner 2001).
 
 The desired position is uniform in the space, the desired velocity uniform in the ball of
-velocities; the controller drives there from the vertex nearest in position and weighted velocity.
+velocities; the controller drives there from the nearest vertex, in position and weighted velocity.
 """
 
 from dataclasses import dataclass, field
@@ -24,12 +24,8 @@ from hnr_planner.core.planning.planners.rrt import draw_in_box, PROPOSALS_PER_IT
 from hnr_planner.core.sampling.draws import draw_in_ball
 from hnr_planner.core.spaces.primitives import contains
 from hnr_planner.core.systems.primitives import velocity
+from hnr_planner.core.trajectories.driven import drive, DrivenPlanner, DrivenSearch
 from hnr_planner.core.trajectories.problem import KinodynamicProblem
-from hnr_planner.core.trajectories.steps import (
-    drive,
-    DrivenPlanner,
-    DrivenSearch,
-)
 import numpy as np
 
 
@@ -46,7 +42,7 @@ class KinodynamicRRT(DrivenPlanner):
 
 @dataclass
 class KinodynamicRRTSearch(DrivenSearch):
-    """A tree under way; its vertices are where transitions ended."""
+    """A tree under way; its vertices are the states at which transitions ended."""
 
     rejected: int = field(init=False, default=0)
     #: Position and weighted velocity (rows, 2 dim) of each vertex.
@@ -92,14 +88,14 @@ class KinodynamicRRTSearch(DrivenSearch):
 
 @kernel
 def _plant(problem, driving, steps, points, tree):
-    """Make the start a vertex."""
+    """Insert the start into the tree as its first vertex."""
     _write_point(problem.system, driving.velocity_weight, steps.states[0], points[0])
     insert(tree, points, 0)
 
 
 @kernel
 def _grow(problem, driving, rng, steps, points, tree, n_rows, n_iterations):
-    """Grow on: (rows, transitions, steps tried, rejected proposals, whether it is done)."""
+    """Grow the tree: (rows, transitions, steps tried, rejected proposals, whether solved)."""
     problem, rng, steps = borrowed(problem), borrowed(rng), borrowed(steps)
     points, tree = borrowed(points), borrowed(tree)
     geometric, iterations, n_steps, rejected = problem.geometric, 0, 0, 0
@@ -131,7 +127,7 @@ def _grow(problem, driving, rng, steps, points, tree, n_rows, n_iterations):
 
 @kernel
 def _write_point(system, weight, state, point):
-    """Write position and weighted velocity of a state."""
+    """Write position and weighted velocity of a state to a point (2 dim,)."""
     dim = len(point) // 2
     velocity(system, state, point[dim:])
     for i in range(dim):

@@ -1,9 +1,9 @@
 """
-Smoothing in time: a motion of the double integrator becomes shorter, never longer.
+Shortening a motion of the double integrator in time: it never becomes longer.
 
-Two states of the motion are connected directly, or through a state near one between them, and what
-is free and faster takes the place of the part between (after Hauser and Ng-Thow-Hing, 2010). The
-end may lie anywhere in the goal region, at any speed that is allowed there.
+Two states of the motion are connected directly, or through a state near one between them, and a
+connection that is free and faster replaces the motion between them (after Hauser and
+Ng-Thow-Hing, 2010). The end may lie anywhere in the goal region, at any speed allowed there.
 """
 
 import math
@@ -13,27 +13,39 @@ from hnr_planner.core.kernels.kernel import kernel
 from hnr_planner.core.kernels.streams import normal, Stream, uniform
 from hnr_planner.core.sampling.draws import draw_in_ball
 from hnr_planner.core.systems.primitives import contact, move
-from hnr_planner.core.trajectories.connection import connect, empty_connection
-from hnr_planner.core.trajectories.problem import is_at_goal, KinodynamicProblem, Motion
+from hnr_planner.core.trajectories.problem import (
+    is_at_goal,
+    KinodynamicProblem,
+    Motion,
+    SHORTEST_STEP,
+)
+from hnr_planner.core.trajectories.steps import can_brake
+from hnr_planner.core.trajectories.two_point import connect, empty_connection
 import numpy as np
 
-#: Part of the proposals that reach to the end, and that go through a state between.
+#: Fractions of the proposals that reach to the end, and that go through a state between.
 TO_END, THROUGH = 0.2, 0.6
-#: States between are moved by up to what acceleration does in the time, down to this part of it.
+#: A state between is moved by at most what acceleration does in the time, at least by this
+#: fraction of it.
 LEAST_SHIFT = 1e-3
-#: Least gain, as a part of the duration: what is less is rounding before long.
+#: Least gain, as a fraction of the duration: smaller ones would soon be rounding.
 LEAST_GAIN = 1e-6
 
 
-def shorten_in_time(
-    problem: KinodynamicProblem, motion: Motion, rng: Stream, proposals: int
+def shorten(
+    problem: KinodynamicProblem, motion: Motion, rng: Stream, proposals: int, brakes: bool
 ) -> Motion:
-    """Return a motion from the same start into the same goal region, never longer."""
-    return Motion(*_shorten(problem, *motion, rng, proposals))
+    """
+    Return a motion from the same start into the same goal region after some proposals.
+
+    With ``brakes`` its end can be braked straight to rest if that of ``motion`` can.
+    """
+    return Motion(*_shorten(problem, *motion, rng, proposals, brakes))
 
 
 @kernel
-def _shorten(problem, durations, states, controls, rng, proposals):
+def _shorten(problem, durations, states, controls, rng, proposals, brakes):
+    """Apply proposals to a motion; return the fields of the motion that it becomes."""
     problem, rng = borrowed(problem), borrowed(rng)
     system, dim = problem.system, controls.shape[1]
     first, second = empty_connection(dim), empty_connection(dim)
@@ -47,11 +59,11 @@ def _shorten(problem, durations, states, controls, rng, proposals):
         j, after_j = _locate(durations, begin + window)
         if to_end:
             j, after_j = len(durations) - 1, durations[-1]
-        longest = window - LEAST_GAIN * total
+        longest = window - max(LEAST_GAIN * total, 2.0 * SHORTEST_STEP)
         move(system, states[i], controls[i], after_i, a)
         move(system, states[j], controls[j], after_j, b)
         if to_end:
-            _draw_end(problem, rng, states[-1], b)
+            _draw_end(problem, rng, states[-1], b, brakes)
         if uniform(rng) < THROUGH:
             k, after_k = _locate(durations, begin + uniform(rng) * window)
             move(system, states[k], controls[k], after_k, between)
@@ -62,12 +74,12 @@ def _shorten(problem, durations, states, controls, rng, proposals):
             onward = connect(system, between, b, longest - there, second)
             if onward == math.inf:
                 continue
-            if not (_is_free(problem, a, first) and _is_free(problem, between, second)):
+            if not (is_free(problem, a, first) and is_free(problem, between, second)):
                 continue
         else:
             if connect(system, a, b, longest, first) == math.inf:
                 continue
-            if not _is_free(problem, a, first):
+            if not is_free(problem, a, first):
                 continue
             second.n[0] = 0
         durations, states, controls = _spliced(
@@ -85,25 +97,38 @@ def _shorten(problem, durations, states, controls, rng, proposals):
 
 @kernel
 def _locate(durations, t):
-    """Return the step that is under way at a time, and the time since it began."""
+    """
+    Return the step that is under way at time ``t``, and the time since it began.
+
+    A time so close to the begin or the end of the step that less than a step would be left is
+    taken there.
+    """
     last = len(durations) - 1
     for k in range(last):
         if t < durations[k]:
-            return k, t
+            return k, _snapped(t, durations[k])
         t -= durations[k]
-    return last, min(t, durations[last])
+    return last, _snapped(min(t, durations[last]), durations[last])
+
+
+@kernel
+def _snapped(t, duration):
+    """Return 0 or ``duration`` in place of a time ``t`` closer to it than a step may be short."""
+    if t < SHORTEST_STEP:
+        return 0.0
+    return t if t <= duration - SHORTEST_STEP else duration
 
 
 @kernel
 def _shift(system, rng, window, state):
-    """Move a state at random, as far as acceleration may have moved it in the time or less."""
+    """Move a state at random, at most as far as acceleration may have moved it in the time."""
     dim = len(state) // 2
-    part = LEAST_SHIFT ** uniform(rng)
-    pull = part * system.max_acceleration * window
+    fraction = LEAST_SHIFT ** uniform(rng)
+    change = fraction * system.max_acceleration * window
     squared = 0.0
     for i in range(dim):
-        state[i] += 0.125 * pull * window * normal(rng)
-        state[dim + i] += 0.5 * pull * normal(rng)
+        state[i] += 0.125 * change * window * normal(rng)
+        state[dim + i] += 0.5 * change * normal(rng)
         squared += state[dim + i] ** 2
     if squared > system.max_speed**2:
         for i in range(dim):
@@ -111,28 +136,28 @@ def _shift(system, rng, window, state):
 
 
 @kernel
-def _draw_end(problem, rng, last, end):
-    """Draw an end in the goal region and no faster than allowed, near the last one or anywhere."""
+def _draw_end(problem, rng, last, end, brakes):
+    """Draw an end in the goal region, at a speed allowed there: near the last one or anywhere."""
     geometric, dim = problem.geometric, len(problem.geometric.goal)
-    part = LEAST_SHIFT ** uniform(rng) if uniform(rng) < 0.5 else 1.0
+    fraction = LEAST_SHIFT ** uniform(rng) if uniform(rng) < 0.5 else 1.0
     end[:] = last
     offset = np.empty(dim)
     if geometric.goal_radius > 0.0:
         draw_in_ball(geometric.goal_radius, rng, offset)
         for i in range(dim):
-            end[i] += part * (geometric.goal[i] + offset[i] - end[i])
+            end[i] += fraction * (geometric.goal[i] + offset[i] - end[i])
     fastest = min(problem.goal_speed, problem.system.max_speed)
     if fastest > 0.0:
         draw_in_ball(fastest, rng, offset)
         for i in range(dim):
-            end[dim + i] += part * (offset[i] - end[dim + i])
-    if not is_at_goal(problem, end):
+            end[dim + i] += fraction * (offset[i] - end[dim + i])
+    if not is_at_goal(problem, end) or (brakes and not can_brake(problem, end, dim)):
         end[:] = last
 
 
 @kernel
-def _is_free(problem, state, connection):
-    """Say whether a connection from ``state`` meets no boundary."""
+def is_free(problem, state, connection):
+    """Return whether a connection from ``state`` meets no boundary."""
     at, end = state.copy(), np.empty(len(state))
     for k in range(connection.n[0]):
         duration, control = connection.durations[k], connection.controls[k]
@@ -144,9 +169,9 @@ def _is_free(problem, state, connection):
 
 
 @kernel
-def _spliced(system, durations, states, controls, part, ends, connections):
-    """Return the motion with a part of it replaced by one connection or two."""
-    i, after_i, j, after_j = part
+def _spliced(system, durations, states, controls, window, ends, connections):
+    """Return the motion with a window of it replaced by one connection or two."""
+    i, after_i, j, after_j = window
     a, between, b = ends
     rest = durations[j] - after_j
     keeps = rest > 0.0 and j < len(durations)

@@ -4,7 +4,7 @@ import math
 from typing import NamedTuple
 
 from geometry_msgs.msg import Point, Pose, Vector3
-from hnr_planner.core import PlanResult
+from hnr_planner.core.planning.result import SearchResult
 from hnr_planner.server.requests import PlanRequest
 from hnr_planner.server.responses import PlanResponse
 from hnr_planner.server.subsample import shown_samples
@@ -51,7 +51,7 @@ class _Shape(NamedTuple):
     place: tuple[float, float] = (0.0, 0.0)
 
 
-def _search_shapes(result: PlanResult, cell: float) -> list[_Shape]:
+def _search_shapes(result: SearchResult, cell: float) -> list[_Shape]:
     """Return the samples, the edges between them and the path."""
     samples, parents = result.samples, result.parents
     dots = shown_samples(parents, MOST_POINTS)

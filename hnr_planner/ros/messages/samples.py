@@ -2,7 +2,7 @@
 
 import array
 
-from hnr_planner.core import PlanResult
+from hnr_planner.core.planning.result import SearchResult
 from hnr_planner.server.responses import SampleResponse
 from hnr_planner.server.subsample import shown_samples
 import numpy as np
@@ -21,7 +21,7 @@ COLUMNS = (
 LAYOUT = np.dtype([(name, form) for name, form, _ in COLUMNS])
 
 
-def samples_message(result: PlanResult | None, limit: int, header: Header) -> PointCloud2:
+def samples_message(result: SearchResult | None, limit: int, header: Header) -> PointCloud2:
     """
     Return at most `limit` samples; `parent` is the `index` of the sample it was grown from.
 

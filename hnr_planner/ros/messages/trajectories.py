@@ -28,7 +28,7 @@ def trajectory_message(report: PlanResponse, header: Header) -> MultiDOFJointTra
     in between positions are quadratic, so that a cubic through positions and velocities is exact.
     """
     message = MultiDOFJointTrajectory(header=header, joint_names=['base'])
-    trajectory = None if report.result is None else report.result.trajectory
+    trajectory = getattr(report.result, 'trajectory', None)
     if not report.solved or trajectory is None:
         return message
     pulls = np.vstack([trajectory.controls, np.zeros(2)])

@@ -4,7 +4,7 @@ import importlib.util
 import itertools
 import math
 from pathlib import Path
-from test.core.kernels.test_agreement import same
+from test.core.kernels.replays import same
 from typing import Any
 
 from hnr_planner.core.errors import Interrupted

@@ -155,10 +155,12 @@ def test_rrt():
 def test_hit_and_run_connect():
     outcomes = []
     for begin in (connect._begin, interpreted(connect._begin)):
-        trees, _, done = begin(PROBLEM, stream(5), 120)
-        rows = int(trees.sizes.sum())
+        trees, done = begin(PROBLEM, stream(5), 120)
+        rows = int(trees.table.sizes.sum())
         assert rows > 10
-        outcomes.append([done[0], done[1:], trees.vertices[:rows], trees.parents[:rows]])
+        outcomes.append(
+            [done[0], done[1:], trees.table.vertices[:rows], trees.table.parents[:rows]]
+        )
     assert_same(*outcomes)
 
 

@@ -17,6 +17,8 @@ BLOCKED = maps.rooms(60, 80, 10, seed=4)
 SPACE = GridSpace.from_blocked(BLOCKED, 0.1)
 START, GOAL = SPACE.cell_centres(2, 2), SPACE.cell_centres(57, 75)
 
+#: Success must not depend on how fast the machine is.
+UNLIMITED = {'time_limit': math.inf}
 NARROW = spiral(0.4)
 HARD = GridSpace.from_blocked(NARROW.blocked, NARROW.resolution)
 
@@ -75,6 +77,8 @@ def test_the_first_solution_is_kept_beside_the_simplified_path():
     assert result.first_solution.length == raw.length == raw.first_solution.length
     assert result.length < raw.length
     assert result.first_solution.elapsed <= result.elapsed
+    np.testing.assert_array_equal(result.first_solution.path, raw.path)
+    np.testing.assert_array_equal(raw.first_solution.path, raw.path)
     assert len(result.paths) == 1 and result.paths[0] is result.path
 
 
@@ -104,12 +108,36 @@ def test_more_searches_never_give_a_longer_path():
     assert path_collisions(often.path, BLOCKED, 0.1) == []
 
 
-def test_improving_for_a_time_ends_with_the_time_and_says_so():
+def test_optimizing_for_a_time_is_bounded_by_a_count_of_searches():
+    """The clock has no part in it where it does not cut: the same seed, the same path."""
+    once, *often = (
+        plan(SPACE, START, GOAL, seed=4, optimize_for=t, **UNLIMITED) for t in (0, 5, 5)
+    )
+    assert often[0].length < once.length
+    assert not often[0].cut_by_time
+    np.testing.assert_array_equal(often[0].path, often[1].path)
+    assert often[0].iterations == often[1].iterations
+
+
+def test_the_clock_cuts_what_is_optimized_for_a_time():
     began = time.perf_counter()
-    result = plan(SPACE, START, GOAL, seed=4, optimize_for=0.2)
-    assert 0.2 <= time.perf_counter() - began < 5.0
+    request = {'seed': 4, 'optimize_for': 0.2, 'optimize_iterations': 10**9}
+    result = plan(SPACE, START, GOAL, **request, **UNLIMITED)
+    assert 0.2 <= time.perf_counter() - began < 30.0
     assert result.status is PlannerStatus.SOLVED
     assert result.cut_by_time
+
+
+def test_optimizing_ends_where_nothing_is_gained():
+    """Two rooms and a door: after a few searches there is nothing to be had."""
+    blocked = np.zeros((20, 40), dtype=bool)
+    blocked[:, 20] = True
+    blocked[10, 20] = False
+    space = GridSpace.from_blocked(blocked)
+    few, many = (
+        plan(space, (5.0, 3.0), (35.0, 3.0), seed=1, optimize_for=t, **UNLIMITED) for t in (1, 100)
+    )
+    assert few.iterations == many.iterations
 
 
 def test_inputs_are_not_changed():
@@ -117,6 +145,22 @@ def test_inputs_are_not_changed():
     plan(SPACE, start, goal, seed=0)
     np.testing.assert_array_equal(start, START)
     np.testing.assert_array_equal(goal, GOAL)
+
+
+def test_counts_are_those_of_all_searches():
+    """RRT rejects a share of its proposals in each search."""
+    request = {'algorithm': 'rrt', 'seed': 4, 'time_limit': math.inf}
+    counts = [
+        plan(SPACE, START, GOAL, optimize_iterations=n, **request).counts['rejected_proposals']
+        for n in (0, 1, 5)
+    ]
+    assert 0 < counts[0] < counts[1] < counts[2]
+
+
+def test_a_result_shows_what_it_is_without_its_arrays():
+    shown = repr(plan(SPACE, START, GOAL, seed=4))
+    assert shown.startswith('PlanResult(SOLVED, length=') and 'vertices=' in shown
+    assert 'array' not in shown and len(shown) < 150
 
 
 # -- refused at once -----------------------------------------------------------------------------
@@ -267,7 +311,8 @@ def test_a_call_that_was_cut_says_so_and_no_other_does():
     chain = {'algorithm': 'hit_and_run', 'seed': 3, 'time_limit': 30.0}
     assert not plan(SPACE, START, GOAL, **chain).cut_by_time
     assert not plan(SPACE, START, START + 0.01, time_limit=0.0).cut_by_time
-    assert plan(SPACE, START, GOAL, seed=3, optimize_for=0.05).cut_by_time
+    endless = {'optimize_for': 0.05, 'optimize_iterations': 10**9}
+    assert plan(SPACE, START, GOAL, seed=3, **endless).cut_by_time
     cancelled = threading.Event()
     cancelled.set()
     assert plan(SPACE, START, GOAL, cancel=cancelled, **chain).cut_by_time
@@ -335,6 +380,12 @@ def test_a_region_larger_than_a_large_map_costs_little():
         ({'algorithm': 'rrt', 'max_step': 'far'}, "max_step must be a number, got 'far'"),
         ({'start': (10**400, 1)}, 'start must be numbers'),
         ({'algorithm': RRT(), 'max_step': 1.0}, 'go with the name of a planner only'),
+        ({'clearance': -1.0}, 'clearance must be in'),
+        ({'clearance': 0.1, 'simplify': False}, 'clearance must be 0 when simplify is false'),
+        ({'alternatives': 2, 'simplify': False}, 'alternatives must be 1 when simplify is false'),
+        ({'cancel': True}, 'cancel must be an event'),
+        ({'system': None}, 'plan takes no system: .* plan_trajectory'),
+        ({'goal_speed': 0.0}, 'plan takes no goal_speed: .* plan_trajectory'),
     ],
 )
 def test_a_malformed_argument_is_a_value_error_that_names_the_value(arguments, words: str):

@@ -1,5 +1,9 @@
 """Spaces known by a function only: what the search promises, and what a function may do."""
 
+from pathlib import Path
+import pickle
+import subprocess
+import sys
 import threading
 
 from hnr_planner.core import (
@@ -10,6 +14,7 @@ from hnr_planner.core import (
     RequestError,
     sample,
     SpaceError,
+    UnionSpace,
 )
 from numba import njit
 import numpy as np
@@ -166,3 +171,25 @@ def test_what_is_no_oracle_is_refused_with_the_reason(function, lower, upper, re
 def test_a_chord_that_is_no_function_is_refused():
     with pytest.raises(SpaceError, match='chord must be a function, got 3'):
         OracleSpace.from_chord(3, *SQUARE, resolution=0.1)
+
+
+def test_a_pickled_space_calls_its_function_in_another_process(tmp_path):
+    """A compiled space has addresses of functions in its own process: they must not be pickled."""
+    space = UnionSpace(
+        OracleSpace(is_in_ring, *SQUARE, resolution=0.05), BoxSpace((2.0, 0.0), (3.0, 1.0))
+    )
+    points = np.random.default_rng(4).uniform(-1.0, 3.0, (200, 2))
+    (tmp_path / 'space.pickle').write_bytes(pickle.dumps((space, points)))
+    code = (
+        'import pickle, sys; space, points = pickle.load(open(sys.argv[1], "rb")); '
+        'print(space.contains(points).tolist())'
+    )
+    done = subprocess.run(
+        [sys.executable, '-c', code, tmp_path / 'space.pickle'],
+        cwd=Path(__file__).parents[3],
+        capture_output=True,
+        text=True,
+        timeout=120,
+        check=True,
+    )
+    assert done.stdout.strip() == str(space.contains(points).tolist())

@@ -2,7 +2,7 @@
 
 import math
 
-from hnr_planner.core import BallSpace, BoxSpace, DifferenceSpace, plan, PlannerStatus
+from hnr_planner.core import BallSpace, BoxSpace, DifferenceSpace, plan_trajectory, PlannerStatus
 from hnr_planner.core.systems import DoubleIntegrator
 import numpy as np
 import pytest
@@ -23,18 +23,16 @@ def test_a_trajectory_among_spheres_is_free_and_keeps_the_limits(
     algorithm: str, speed: float
 ) -> None:
     """Looked at every thousandth of a step, and simulated again from the start."""
-    settings = {} if algorithm == 'kinodynamic_connect' else {'boundary': 'forbidden'}
     begin = START + [0, 0, 0, 0, speed, 0]
-    result = plan(
+    result = plan_trajectory(
         SPACE,
+        SYSTEM,
         begin,
         GOAL,
-        system=SYSTEM,
         algorithm=algorithm,
         goal_radius=0.5,
-        time_limit=1e6,
+        time_limit=math.inf,
         seed=1,
-        **settings,
     )
     assert result.status is PlannerStatus.SOLVED
     trajectory = result.trajectory
@@ -52,5 +50,5 @@ def test_a_trajectory_among_spheres_is_free_and_keeps_the_limits(
 
 def test_a_start_that_cannot_stop_before_the_box_ends_is_named() -> None:
     begin = START + [0, 0, 0, -1.2, 0, 0]
-    result = plan(SPACE, begin, GOAL, system=SYSTEM)
+    result = plan_trajectory(SPACE, SYSTEM, begin, GOAL, time_limit=math.inf)
     assert result.status is PlannerStatus.INEVITABLE_COLLISION

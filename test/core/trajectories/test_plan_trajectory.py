@@ -1,4 +1,4 @@
-"""``plan`` for a system: ends, limits, statuses, bad input, and time."""
+"""``plan_trajectory``: ends, limits, statuses, bad input, and time."""
 
 import math
 from pathlib import Path
@@ -19,16 +19,25 @@ from test.core.trajectories.worlds import (
 import threading
 from typing import Any
 
-from hnr_planner.core import HnrError, plan, PlannerStatus, PlanResult
+from hnr_planner.core import (
+    HnrError,
+    plan,
+    plan_trajectory,
+    PlannerStatus,
+    TrajectoryResult,
+)
+from hnr_planner.core.planning.planners.hit_and_run import HitAndRun
 from hnr_planner.core.systems import DoubleIntegrator
+from hnr_planner.core.trajectories.rrt import KinodynamicRRT
 import numpy as np
 import pytest
 
 
-def solve(start: Any = START, goal: Any = GOAL, **given: Any) -> PlanResult:
-    """Plan in the serpentine; no clock is in the way unless asked for."""
-    arguments = {'system': INTEGRATOR, 'seed': 1, 'time_limit': 1e6, **given}
-    return plan(SPACE, start, goal, **arguments)
+def solve(start: Any = START, goal: Any = GOAL, **given: Any) -> TrajectoryResult:
+    """Plan in the serpentine; no clock limits it unless asked for."""
+    arguments = {'system': INTEGRATOR, 'seed': 1, 'time_limit': math.inf, **given}
+    system = arguments.pop('system')
+    return plan_trajectory(SPACE, system, start, goal, **arguments)
 
 
 # -- where it ends
@@ -130,7 +139,7 @@ def test_ends_that_are_no_good_are_named() -> None:
     assert solve(goal=wall).status is PlannerStatus.INVALID_GOAL
     blocked = BLOCKED.copy()
     blocked[6] = True
-    result = plan(space_of(blocked), START, GOAL, system=INTEGRATOR)
+    result = plan_trajectory(space_of(blocked), INTEGRATOR, START, GOAL)
     assert result.status is PlannerStatus.UNREACHABLE and 'no path exists' in result.message
 
 
@@ -138,13 +147,15 @@ def test_ends_that_are_no_good_are_named() -> None:
 FIRST_REQUEST = """
 import sys
 sys.path.insert(0, '.')
-from hnr_planner.core import GridSpace, plan
+from hnr_planner.core import GridSpace, plan_trajectory
+from hnr_planner.core.planning.planners.hit_and_run import HitAndRun
 from hnr_planner.core.systems import DoubleIntegrator
+from hnr_planner.core.trajectories.rrt import KinodynamicRRT
 import numpy as np
 space = GridSpace.from_blocked(np.zeros((20, 20), bool), 0.5)
 system = DoubleIntegrator(max_speed=1e5)
 for start in ((-5e7, 5.0, (1e8 + 10.0) ** 0.5, 0.0), (2.0, 5.0, 0.0, 0.0)):
-    print(plan(space, start, (8.0, 8.0), system=system, seed=0).status.name)
+    print(plan_trajectory(space, system, start, (8.0, 8.0), seed=0).status.name)
 """
 
 
@@ -158,69 +169,45 @@ def test_a_start_outside_the_map_harms_no_request_to_come(tmp_path: Path) -> Non
     assert (done.returncode, done.stdout) == (0, 'INVALID_START\nSOLVED\n'), done.stderr
 
 
-CERTAIN = {
-    'head on, past the stopping distance': state(4.6, 0.75, 1.9, 0.0),
-    'between two walls': state(3.0, 1.45, 0.0, 1.9),
-    'at a slant into a corner': state(5.2, 0.5, 1.4, -1.4),
-}
-ESCAPES = {
-    'at rest': START,
-    'slow': state(3.0, 0.75, 0.0, 0.6),
-    'along the arm': state(2.0, 0.75, 1.9, 0.0),
-    'turning away is enough': state(0.75, 0.9, 1.6, 1.0),
-}
+def test_a_start_at_rest_beside_the_goal_takes_one_step() -> None:
+    goal = START[:2] + [5e-9, 0.0]
+    trajectory = solve(goal=goal).trajectory
+    assert trajectory is not None
+    assert np.diff(trajectory.times).min() >= 1e-9
+    assert np.array_equal(trajectory.positions[-1], goal)
 
 
-@pytest.mark.parametrize('begin', CERTAIN.values(), ids=CERTAIN.keys())
-@pytest.mark.parametrize('algorithm', ['auto', 'kinodynamic_rrt', 'kinodynamic_hit_and_run'])
-def test_an_inevitable_collision_is_proved(algorithm: str, begin: Any) -> None:
-    settings = {} if algorithm == 'auto' else {'boundary': 'forbidden'}
-    result = solve(begin, algorithm=algorithm, goal_radius=0.5, **settings)
-    assert result.status is PlannerStatus.INEVITABLE_COLLISION
-    assert 'can neither stop' in result.message and result.iterations == 0
+# -- options
 
 
-@pytest.mark.parametrize('begin', ESCAPES.values(), ids=ESCAPES.keys())
-def test_no_collision_is_called_inevitable_that_is_not(begin: Any) -> None:
-    assert solve(begin).status is PlannerStatus.SOLVED
+def test_without_simplifying_the_hybrid_drives_the_path_as_it_was_found() -> None:
+    raw, short = solve(simplify=False), solve()
+    assert raw.first_solution is not None and short.first_solution is not None
+    assert np.array_equal(raw.first_solution.path, raw.path)
+    assert np.array_equal(short.first_solution.path, raw.path)
+    assert short.first_solution.length == raw.length
+    assert len(short.path) < len(raw.path) and short.length < raw.length
+    assert faults(raw, INTEGRATOR, BLOCKED) == []
 
 
-def test_proofs_of_collision_hold_against_random_driving() -> None:
-    """Whatever 300 random motions do, none outlives the proof; the hybrid solves the others."""
-    rng = np.random.default_rng(8)
-    seen = {True: 0, False: 0}
-    for _ in range(40):
-        v = rng.normal(size=2)
-        v *= rng.uniform(0.5, 2.0) / np.hypot(*v)
-        begin = state(*rng.uniform((0.1, 0.1), (5.9, 1.4)), *v)
-        result = solve(begin, time_limit=0.1)
-        proved = result.status is PlannerStatus.INEVITABLE_COLLISION
-        seen[proved] += 1
-        assert proved or result.status in (PlannerStatus.SOLVED, PlannerStatus.TIMEOUT)
-        if proved:
-            assert not any(survives(begin, rng) for _ in range(300))
-    assert min(seen.values()) > 8
+def test_a_short_time_to_optimize_takes_nothing_from_the_shortening_of_every_request() -> None:
+    plain, optimized = solve(), solve(optimize_for=1e-9)
+    assert plain.trajectory is not None and optimized.trajectory is not None
+    assert np.array_equal(plain.trajectory.states, optimized.trajectory.states)
 
 
-def survives(begin: Any, rng: np.random.Generator) -> bool:
-    """Drive at random by full acceleration for four seconds, looking every hundredth."""
-    x, v = begin[:2].copy(), begin[2:].copy()
-    angle, h = rng.uniform(0.0, 2.0 * np.pi), 0.01
-    for k in range(400):
-        if k % 50 == 0:
-            angle += rng.normal()
-        v = v + h * np.array([math.cos(angle), math.sin(angle)])
-        x = x + h * v
-        if not SPACE.contains(x):
-            return False
-    return True
+def test_a_planner_value_brings_its_boundary() -> None:
+    given = {'goal_radius': 0.5, 'simplify': False, 'seed': 3}
+    value = solve(algorithm=KinodynamicRRT(boundary='inelastic'), **given)
+    named = solve(algorithm='kinodynamic_rrt', boundary='inelastic', **given)
+    assert value.trajectory is not None and named.trajectory is not None
+    assert np.array_equal(value.trajectory.states, named.trajectory.states)
 
 
-def test_an_inelastic_boundary_makes_no_collision_inevitable() -> None:
-    begin = CERTAIN['head on, past the stopping distance']
-    result = solve(begin, algorithm='kinodynamic_rrt', goal_radius=0.5, simplify=False)
-    assert result.status is PlannerStatus.SOLVED
-    assert faults(result, INTEGRATOR, BLOCKED, inelastic=True) == []
+def test_reprs_say_what_was_found() -> None:
+    result = solve()
+    assert f'trajectory={result.trajectory!r}' in repr(result)
+    assert 'of a DoubleIntegrator' in repr(result.trajectory)
 
 
 # -- bad input
@@ -242,7 +229,34 @@ BAD: dict[str, tuple[dict[str, Any], str]] = {
     'class': ({'system': DoubleIntegrator}, 'system must be a system'),
     'dimension': ({'system': DoubleIntegrator(dim=3)}, 'dimension of the space, 2, got 3'),
     'algorithm': ({'algorithm': 'rrt'}, 'algorithm must be one of auto, kinodynamic_connect'),
-    'alternatives': ({'alternatives': 2}, 'alternatives must be 1 for a system'),
+    'alternatives': ({'alternatives': 2}, 'plan_trajectory takes no alternatives'),
+    'clearance': ({'clearance': 0.5}, 'plan_trajectory takes no clearance'),
+    'simplify a car': ({'system': CAR, 'simplify': True, 'goal_radius': 1.0}, 'for a Car: only'),
+    'optimize a car': (
+        {'system': CAR, 'optimize_for': 0.1, 'goal_radius': 1.0},
+        'optimize_for must be 0 for a Car',
+    ),
+    'optimize a car again': (
+        {'system': CAR, 'optimize_iterations': 1, 'goal_radius': 1.0},
+        'optimize_iterations must be 0 for a Car',
+    ),
+    'optimize what is raw': (
+        {'simplify': False, 'optimize_iterations': 1},
+        'optimize_iterations must be 0 when simplify is false',
+    ),
+    'a planner of paths': ({'algorithm': HitAndRun()}, 'hit_and_run plans paths of points'),
+    'hybrid at the boundary': (
+        {'boundary': 'inelastic'},
+        "boundary must be 'forbidden' for this kinodynamic_connect",
+    ),
+    'boundary of a value': (
+        {'algorithm': KinodynamicRRT(), 'boundary': 'inelastic'},
+        "boundary must be 'forbidden' for this kinodynamic_rrt",
+    ),
+    'time_step too short': (
+        {'algorithm': 'kinodynamic_rrt', 'time_step': 1e-10},
+        'time_step must be at least',
+    ),
     'connect a car': (
         {'system': CAR, 'algorithm': 'kinodynamic_connect'},
         'connects states of a DoubleIntegrator only, got a Car',
@@ -254,7 +268,7 @@ BAD: dict[str, tuple[dict[str, Any], str]] = {
         {'algorithm': 'kinodynamic_rrt', 'velocity_weight': -1.0},
         'velocity_weight must be in 0',
     ),
-    'setting': ({'boundary': 'inelastic'}, "has no setting 'boundary'"),
+    'setting': ({'time_step': 0.1}, "has no setting 'time_step'"),
 }
 
 
@@ -264,6 +278,7 @@ def test_bad_input_is_named(given: dict[str, Any], message: str) -> None:
         solve(**given)
 
 
-def test_a_speed_at_the_goal_goes_with_a_system() -> None:
-    with pytest.raises(HnrError, match='goal_speed goes with a system only'):
-        plan(SPACE, START[:2], GOAL, goal_speed=1.0)
+@pytest.mark.parametrize('given', [{'goal_speed': 1.0}, {'system': INTEGRATOR}])
+def test_plan_names_plan_trajectory_for_a_system(given: dict[str, Any]) -> None:
+    with pytest.raises(HnrError, match='plan_trajectory'):
+        plan(SPACE, START[:2], GOAL, **given)

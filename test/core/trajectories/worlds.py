@@ -2,7 +2,7 @@
 
 from test.curve_brute_force import car_faults, double_integrator_faults
 
-from hnr_planner.core import GridSpace, PlanResult
+from hnr_planner.core import GridSpace, TrajectoryResult
 from hnr_planner.core.systems import Car, DoubleIntegrator, System
 import numpy as np
 from numpy.typing import NDArray
@@ -46,7 +46,7 @@ START, GOAL = state(0.75, 0.75), in_map(5.25, 4.25)
 
 
 def faults(
-    result: PlanResult, system: System, blocked: NDArray[np.bool_], inelastic: bool = False
+    result: TrajectoryResult, system: System, blocked: NDArray[np.bool_], inelastic: bool = False
 ) -> list[str]:
     """Return what the checker finds wrong with the trajectory of a result."""
     trajectory = result.trajectory

@@ -1,18 +1,17 @@
 """
-Further paths that are really different: none can be deformed into another past an obstacle.
+Find paths that are really different: none can be deformed into another past an obstacle.
 
 Searches through uniform points of the space lead everywhere, through doors too. Their paths and
-further uniform points make a graph of points that see each other; in it the shortest paths of
-different homology classes are found, and each is pulled taut within its class.
+further uniform points make a graph of points with free segments between them. In it the shortest
+paths of different homology classes are found, and each is shortened within its class.
 """
 
 from dataclasses import replace
 from itertools import pairwise
-import math
-import time
 
 from hnr_planner.core.checks import check_count, Floats
 from hnr_planner.core.errors import RequestError
+from hnr_planner.core.kernels.clock import working_time
 from hnr_planner.core.kernels.kernel import kernel
 from hnr_planner.core.lengths import path_length
 from hnr_planner.core.planning.alternatives.class_graph import (
@@ -24,10 +23,10 @@ from hnr_planner.core.planning.alternatives.class_graph import (
     shortest_classes,
     START,
 )
-from hnr_planner.core.planning.homology import islands_at, NO_ISLANDS, signature
-from hnr_planner.core.planning.limits import Budget
-from hnr_planner.core.planning.planner import compile_search
-from hnr_planner.core.planning.planners.hit_and_run_connect import HitAndRunConnect
+from hnr_planner.core.planning.homology import islands_at, signature
+from hnr_planner.core.planning.limits import Budget, run
+from hnr_planner.core.planning.planner import Work
+from hnr_planner.core.planning.planners.auto import Auto
 from hnr_planner.core.planning.planners.rrt import draw_in_box
 from hnr_planner.core.planning.postprocessing.clearance import increase_clearance
 from hnr_planner.core.planning.postprocessing.simplify import shorten, skip_vertices
@@ -37,18 +36,18 @@ from hnr_planner.core.spaces.primitives import component
 from hnr_planner.core.spaces.space import Space
 import numpy as np
 
-#: Uniform points in the graph, and how many of them are searched for from start and goal; chosen
+#: Number of uniform points in the graph, and of those searched for from start and goal; chosen
 #: with the neighbours below for the shortest classes in little time on building maps.
-POINTS, VIAS = 200, 16
-#: Draws from the bounds for one point that lies in the space, on average at most.
+N_POINTS, N_VIAS = 200, 16
+#: Largest mean number of draws from the bounds for one point that lies in the space.
 DRAWS_FOR_A_POINT = 200
-#: Neighbours that each point of the graph looks at.
-NEAR = 20
-#: Points that look at their neighbours between two looks at the clock.
+#: Nearest neighbours of each point of the graph to which segments are tested.
+N_NEIGHBOURS = 20
+#: Points whose neighbours are tested between two checks of the budget.
 ROWS = 100
-#: Classes sought in the graph for one that is wanted: pulled taut, their order may change.
-SOUGHT = 2
-#: What a random stream is for, beside the purposes of ``plan``.
+#: Classes sought in the graph for each path wanted: shortening may change their order.
+CLASSES_PER_PATH = 2
+#: Purpose of random streams, beside those of ``plan``.
 EXPLORE = 2
 
 
@@ -66,82 +65,88 @@ def check_alternatives(space: Space, alternatives: int, simplify: bool) -> int:
 
 
 def with_alternatives(
-    request: Request, answer: PlanResult, n_paths: int, limits: Budget, began: float
+    request: Request, result: PlanResult, n_paths: int, budget: Budget, began: float
 ) -> PlanResult:
-    """Return a solved request's answer with up to ``n_paths`` paths of different classes."""
-    paths, iterations = _find(request, answer.path, n_paths, limits)
+    """Return a solved request's result with up to ``n_paths`` paths of different classes."""
+    paths, more_work = _find(request, result.path, n_paths, budget)
+    work = Work(result.iterations, result.counts).plus(more_work)
     lengths = ', '.join(f'{path_length(path):.6g}' for path in paths)
-    iterations += answer.iterations
     return replace(
-        answer,
-        message=f'{len(paths)} of {n_paths} paths, of {lengths} m, after {iterations} transitions',
+        result,
+        message=f'{len(paths)} of {n_paths} paths, of {lengths} m, after {work.iterations} '
+        'transitions',
         path=paths[0],
         others=tuple(paths[1:]),
         length=path_length(paths[0]),
-        iterations=iterations,
-        elapsed=time.perf_counter() - began,
-        cut_by_time=limits.cut,
+        iterations=work.iterations,
+        counts=work.counts,
+        elapsed=working_time() - began,
+        cut_by_time=budget.cut,
     )
 
 
 def _find(
-    request: Request, path: Floats, n_paths: int, limits: Budget
-) -> tuple[list[Floats], int]:
+    request: Request, path: Floats, n_paths: int, budget: Budget
+) -> tuple[list[Floats], Work]:
     """
     Find the shortest paths of up to ``n_paths`` classes with the ends of ``path`` (m, dim).
 
     It stands for its class until a shorter one is found there. A limit ends this early, with what
-    is known by then. Returns the paths, the shortest first, and transitions handled.
+    is known by then. Returns the paths, the shortest first, and the work of the searches.
     """
     space = request.space
     if np.array_equal(path[0], path[-1]):
-        return [path], 0
+        return [path], Work(0, {})
     islands = islands_at(np.asarray(space.island_points))
-    graph, iterations = _explore(request, path, limits)
+    graph, work = _explore(request, path, budget)
     shortest = {signature(islands, space.to_kernel(path)): path}
-    found = shortest_classes(graph, islands, SOUGHT * n_paths) if limits.stop() is None else []
+    found = (
+        shortest_classes(graph, islands, CLASSES_PER_PATH * n_paths)
+        if budget.stop() is None
+        else []
+    )
     for number, points in enumerate(found):
         rough = space.from_kernel(points)
         rough[0], rough[-1] = path[0], path[-1]
-        if limits.stop() is not None or not space.is_path_free(rough):
+        if budget.stop() is not None or not space.is_path_free(rough):
             continue
         rng = request.stream(number, EXPLORE, 0)
-        taut = shorten(space, rough, rng, limits, islands=islands)
+        shortened = shorten(space, rough, rng, budget, islands=islands)
         if request.clearance > 0.0:
-            taut = increase_clearance(space, taut, request.clearance, limits, islands)
-        points = space.to_kernel(taut)
+            shortened = increase_clearance(space, shortened, request.clearance, budget, islands)
+        points = space.to_kernel(shortened)
         if is_simple(points):
             among = signature(islands, points)
-            shortest[among] = min(shortest.get(among, taut), taut, key=path_length)
-    return sorted(shortest.values(), key=path_length)[:n_paths], iterations
+            shortest[among] = min(shortest.get(among, shortened), shortened, key=path_length)
+    return sorted(shortest.values(), key=path_length)[:n_paths], work
 
 
-def _explore(request: Request, path: Floats, limits: Budget) -> tuple[ClassGraph, int]:
-    """Return a graph of points of the start's part of the space, and transitions handled."""
-    ways = [request.space.to_kernel(path)]
-    ends = ways[0][0], ways[0][-1]
-    draws = np.empty((POINTS, request.space.dim))
+def _explore(request: Request, path: Floats, budget: Budget) -> tuple[ClassGraph, Work]:
+    """Return a graph of points of the start's component, and the work of the searches."""
+    paths = [request.space.to_kernel(path)]
+    ends = paths[0][0], paths[0][-1]
+    draws = np.empty((N_POINTS, request.space.dim))
     n_draws = _draw_points(request.problem, request.stream(0, EXPLORE, 1), draws)
-    iterations = 0
-    for number, via in enumerate(draws[: min(VIAS, n_draws)]):
+    work = Work(0, {})
+    for number, via in enumerate(draws[: min(N_VIAS, n_draws)]):
         halves = []
         for half, (a, b) in enumerate(pairwise((ends[0], via, ends[1]))):
             problem = request.problem._replace(start=a, goal=b, goal_radius=0.0)
             rng = request.stream(number, EXPLORE, 2, half)
-            search = HitAndRunConnect().start(problem, rng)
-            if limits.run(search) is PlannerStatus.SOLVED:
-                halves.append(skip_vertices(request.space, search.path, limits)[0])
-            iterations += search.iterations
+            search = Auto().start(problem, rng)
+            if run(search, budget) is PlannerStatus.SOLVED:
+                halves.append(skip_vertices(request.space, search.path, budget)[0])
+            work = work.plus(Work.of(search))
         if len(halves) == 2:
-            ways.append(np.concatenate([halves[0], halves[1][1:]]))
-    return _linked(request, ways, draws[:n_draws], limits), iterations
+            paths.append(np.concatenate([halves[0], halves[1][1:]]))
+    return _linked(request, paths, draws[:n_draws], budget), work
 
 
-def _linked(request: Request, ways: list[Floats], others: Floats, limits: Budget) -> ClassGraph:
-    """Link ways with the same ends, other points, and whoever is near and visible."""
-    nodes, edges, n_nodes = [ways[0][[0, -1]]], [], 2
-    for way in ways:
-        inner = way[1:-1]
+def _linked(request: Request, paths: list[Floats], others: Floats, budget: Budget) -> ClassGraph:
+    """Return the graph of paths with the same ends and other points, with edges to near ones."""
+    nodes, edges, n_nodes = [paths[0][[0, -1]]], [], 2
+    for path in paths:
+        inner = path[1:-1]
         row = np.concatenate([[START], np.arange(n_nodes, n_nodes + len(inner)), [GOAL]])
         edges += [row[:-1], row[1:]]
         nodes.append(inner)
@@ -150,30 +155,19 @@ def _linked(request: Request, ways: list[Floats], others: Floats, limits: Budget
     along = np.stack([np.concatenate(edges[::2]), np.concatenate(edges[1::2])], axis=1)
     all_edges = [along]
     for rows in np.array_split(np.arange(len(points)), 1 + len(points) // ROWS):
-        if limits.stop() is None:
-            all_edges.append(near_edges(request.space.data, points, rows, NEAR))
+        if budget.stop() is None:
+            all_edges.append(near_edges(request.space.data, points, rows, N_NEIGHBOURS))
     return class_graph(points, np.concatenate(all_edges))
 
 
 @kernel
 def _draw_points(problem, rng, points):
-    """Fill ``points`` (k, dim) with uniform ones of the start's part; return how many came."""
-    part, n_points = component(problem.space, problem.start), 0
+    """Fill ``points`` (k, dim) with uniform ones of the start's component; return their number."""
+    component_of_start, n_points = component(problem.space, problem.start), 0
     for _ in range(DRAWS_FOR_A_POINT * len(points)):
         if n_points == len(points):
             break
         draw_in_box(problem.lower, problem.upper, rng, points[n_points])
-        if component(problem.space, points[n_points]) == part:
+        if component(problem.space, points[n_points]) == component_of_start:
             n_points += 1
     return n_points
-
-
-def compile_alternatives(request: Request) -> None:
-    """Compile what ``with_alternatives`` runs on this kind of space."""
-    ends = np.stack([request.problem.start, request.problem.start])
-    graph = _linked(request, [ends], ends[:0], Budget(math.inf))
-    shortest_classes(graph, NO_ISLANDS, 1)
-    signature(NO_ISLANDS, ends)
-    is_simple(ends)
-    _draw_points(request.problem, request.stream(0), ends[:0])
-    compile_search(HitAndRunConnect(), request.problem)

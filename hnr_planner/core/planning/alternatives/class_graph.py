@@ -1,11 +1,11 @@
 """
-The shortest paths of different homology classes in a graph of points that see each other.
+Graph of points with free segments between them, and its shortest paths by homology class.
 
 Dijkstra's algorithm over pairs of a point and a signature, as in Bhattacharya, Likhachev and
-Kumar (2012), with the distance to the goal to lead it. A part of one of the k shortest classes is
-itself among the k shortest to where it ends, since what follows can be put to the others too: so
-each point keeps k signatures and the work has a bound. Paths that cross themselves are left out;
-they go round an island and come by again.
+Kumar (2012), directed by the distance to the goal. A path of one of the k shortest classes has
+pieces that are among the k shortest to where they end, since the rest can follow on the others
+too: so each point keeps k signatures and the work has a bound. Paths that cross themselves are
+left out; they go round an island and return.
 """
 
 from heapq import heappop, heappush
@@ -27,14 +27,14 @@ START, GOAL = 0, 1
 
 class ClassGraph(NamedTuple):
     """
-    Points and who sees whom.
+    Points, and the pairs between which the segment is free.
 
     Attributes
     ----------
     points : (n, 2)
         The nodes, start and goal first.
     first : (n + 1,) int64
-        Where each node's neighbours begin.
+        Index where each node's neighbours begin.
     neighbours : (edges,) int64
         The neighbours of all nodes.
 
@@ -62,15 +62,17 @@ def shortest_classes(graph: ClassGraph, islands: Islands, n_classes: int) -> lis
 
 @kernel
 def near_edges(space, points, rows, n_near):
-    """Edges (k, 2) from the points in ``rows`` to those of their nearest ones that they see."""
+    """Return the edges (k, 2) from the points in ``rows`` to visible ones of their nearest."""
     edges, n_edges = np.empty((len(rows) * n_near, 2), dtype=np.int64), 0
     nearest, squared = np.empty(n_near, dtype=np.int64), np.empty(n_near)
     for i in rows:
         nearest[:], squared[:] = NONE, math.inf
         for j in range(len(points)):
             if j != i:
-                apart = (points[j, 0] - points[i, 0]) ** 2 + (points[j, 1] - points[i, 1]) ** 2
-                _insert(nearest, squared, j, apart)
+                distance_squared = (points[j, 0] - points[i, 0]) ** 2 + (
+                    points[j, 1] - points[i, 1]
+                ) ** 2
+                _insert(nearest, squared, j, distance_squared)
         for j in nearest:
             if j != NONE and segment_is_free(space, points[i], points[j]):
                 edges[n_edges, 0], edges[n_edges, 1] = i, j
@@ -79,20 +81,20 @@ def near_edges(space, points, rows, n_near):
 
 
 @kernel
-def _insert(nearest, squared, j, apart):
-    """Put ``j`` where it belongs among the nearest, which are in order."""
+def _insert(nearest, squared, j, distance_squared):
+    """Insert ``j`` into the nearest, which are in the order of their distance."""
     k = len(nearest)
-    while k > 0 and apart < squared[k - 1]:
+    while k > 0 and distance_squared < squared[k - 1]:
         k -= 1
         if k + 1 < len(nearest):
             nearest[k + 1], squared[k + 1] = nearest[k], squared[k]
     if k < len(nearest):
-        nearest[k], squared[k] = j, apart
+        nearest[k], squared[k] = j, distance_squared
 
 
 @kernel
 def _search(graph, islands, n_classes):
-    """Search from start to goal: (labels at the goal, node and parent of every label)."""
+    """Search from start to goal; return labels at the goal, node and parent of every label."""
     points, rows = graph.points, 1 + n_classes * len(graph.neighbours)
     nodes, parents = np.empty(rows, dtype=np.int64), np.empty(rows, dtype=np.int64)
     lengths, signatures = np.empty(rows), np.empty(rows, dtype=np.int64)
@@ -126,7 +128,7 @@ def _search(graph, islands, n_classes):
 
 @kernel
 def _is_new(known, n_known, node, signature):
-    """Say whether a node has room for one more signature, and does not have this one."""
+    """Return whether a node has room for one more signature, and does not have this one."""
     for k in range(n_known[node]):
         if known[node, k] == signature:
             return False
@@ -135,7 +137,7 @@ def _is_new(known, n_known, node, signature):
 
 @kernel
 def _crosses_itself(points, nodes, parents, label, near):
-    """Say whether the segment from a label's node to ``near`` crosses the path to the label."""
+    """Return whether the segment from a label's node to ``near`` crosses the path to the label."""
     node, later = nodes[label], parents[label]
     if later == NONE:
         return False
@@ -150,7 +152,7 @@ def _crosses_itself(points, nodes, parents, label, near):
 
 @kernel
 def is_simple(path):
-    """Say whether no two segments of a path (m, 2) cross."""
+    """Return whether no two segments of a path (m, 2) cross."""
     for j in range(1, len(path)):
         for i in range(1, j - 1):
             if _cross(path[i - 1], path[i], path[j - 1], path[j]):
@@ -160,11 +162,11 @@ def is_simple(path):
 
 @kernel
 def _cross(a, b, c, d):
-    """Say whether the segments a-b and c-d cross in a point inside both."""
+    """Return whether the segments a-b and c-d cross in a point inside both."""
     return _side(a, b, c) * _side(a, b, d) < 0.0 and _side(c, d, a) * _side(c, d, b) < 0.0
 
 
 @kernel
 def _side(a, b, x):
-    """Positive when ``x`` is to the left of the line from ``a`` to ``b``."""
+    """Return a number that is positive when ``x`` is to the left of the line from a to b."""
     return (b[0] - a[0]) * (x[1] - a[1]) - (b[1] - a[1]) * (x[0] - a[0])

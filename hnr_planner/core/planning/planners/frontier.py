@@ -1,28 +1,29 @@
 """
-Where a tree should grow: from the newest vertex of the part of it that was used least.
+Frontier of a tree: the newest vertex in the bin that was chosen least often.
 
-The plane of the first two coordinates is divided into square bins. Each tree knows the bins that
-hold a vertex of it, by how often they were chosen: the least used come first, and of these the
-newest. So a tree runs ahead where it has just got to, and comes back to what it left behind.
+The plane of the first two coordinates is divided into square bins. Each tree keeps lists of the
+bins that hold a vertex of it, one list for each number of times that they were chosen: the least
+used come first, and of these the newest. So a tree runs ahead where it has just arrived, and
+returns to what it left behind.
 """
 
 import math
 from typing import NamedTuple
 
-from hnr_planner.core.checks import Floats
 from hnr_planner.core.kernels.kernel import kernel
 from hnr_planner.core.kernels.streams import uniform
+from hnr_planner.core.planning.bins import bin_of, Bins, make_bins
 from hnr_planner.core.trees import NONE
 import numpy as np
 from numpy.typing import NDArray
 
-#: Most bins along the longer side of the bounds, so that a search on a large map starts at once.
+#: Largest number of bins along the longer side: a search on a large map has to start at once.
 BINS_MAX = 128
 #: Side of a bin in units of the typical clearance; measured on building maps and spirals.
 SIDE = 1.75
-#: Choices counted apart: a bin chosen more often stays with those chosen this often.
+#: Largest number of choices that is counted: bins chosen more often share a list.
 USES_MAX = 63
-#: Part of the choices that any bin may get, so that no part of a tree is left for ever.
+#: Fraction of choices made among all bins, so that no bin is left for ever.
 ANY = 0.07
 
 
@@ -32,12 +33,7 @@ class Frontier(NamedTuple):
 
     Attributes
     ----------
-    lower : (dim,)
-        Corner of the bounds, where the bins begin.
-    side : float
-        Side of a bin.
-    columns : int
-        Bins in a row, with a rim of empty bins on both sides.
+    bins : Bins
     newest : (2, bins) int32
         Newest vertex in a bin, NONE in an empty one.
     first : (2, USES_MAX + 1) int32
@@ -45,15 +41,13 @@ class Frontier(NamedTuple):
     following : (2, bins) int32
         The next bin used as often.
     filled : (2, bins) int32
-        The bins that are not empty, in the order in which they were filled.
+        Bins that are not empty, in the order in which they were filled.
     n_filled : (2,) int64
-        How many those are.
+        Number of those.
 
     """
 
-    lower: Floats
-    side: float
-    columns: int
+    bins: Bins
     newest: NDArray[np.int32]
     first: NDArray[np.int32]
     following: NDArray[np.int32]
@@ -63,15 +57,13 @@ class Frontier(NamedTuple):
 
 @kernel
 def empty_frontier(lower, upper, clearance):
-    """Return the frontier of two trees without vertices, for a space of this typical clearance."""
+    """Return the frontiers of two empty trees in a box, for a space of this typical clearance."""
     width, height = upper[0] - lower[0], upper[1] - lower[1] if len(lower) > 1 else 0.0
     side = max(SIDE * clearance, max(width, height) / BINS_MAX)
-    columns, rows = int(width / side) + 3, int(height / side) + 3
-    shape = (2, rows * columns)
+    bins = make_bins(lower, upper, side)
+    shape = (2, bins.rows * bins.columns)
     return Frontier(
-        lower,
-        side,
-        columns,
+        bins,
         np.full(shape, NONE, dtype=np.int32),
         np.full((2, USES_MAX + 1), NONE, dtype=np.int32),
         np.empty(shape, dtype=np.int32),
@@ -81,17 +73,9 @@ def empty_frontier(lower, upper, clearance):
 
 
 @kernel
-def bin_of(frontier, x):
-    """Index of the bin that holds ``x`` (dim,)."""
-    column = 1 + math.floor((x[0] - frontier.lower[0]) / frontier.side)
-    row = 1 + math.floor((x[1] - frontier.lower[1]) / frontier.side) if len(x) > 1 else 1
-    return row * frontier.columns + column
-
-
-@kernel
 def add_to_bin(frontier, tree, x, k):
     """Make vertex ``k`` at ``x`` the newest of its bin; return the bin."""
-    at = bin_of(frontier, x)
+    at = bin_of(frontier.bins, x)
     if frontier.newest[tree, at] == NONE:
         _put_first(frontier, tree, at, 0)
         frontier.filled[tree, frontier.n_filled[tree]] = at
@@ -102,7 +86,7 @@ def add_to_bin(frontier, tree, x, k):
 
 @kernel
 def choose_vertex(frontier, tree, rng):
-    """Choose the vertex of a tree to grow from."""
+    """Choose the vertex of a tree to grow from; return its row."""
     if uniform(rng) < ANY:
         at = frontier.filled[tree, math.floor(frontier.n_filled[tree] * uniform(rng))]
         return frontier.newest[tree, at]
@@ -117,5 +101,6 @@ def choose_vertex(frontier, tree, rng):
 
 @kernel
 def _put_first(frontier, tree, at, uses):
+    """Put a bin first in the list of those that were chosen ``uses`` times."""
     frontier.following[tree, at] = frontier.first[tree, uses]
     frontier.first[tree, uses] = at

@@ -1,8 +1,9 @@
 """
 Hit-and-Run as a planner (paper, Section 1).
 
-From the start, one Hit-and-Run step after another, until a sample reaches the goal. Each step lies
-on a chord, so the chain itself is the path: it needs neither a sampler of the space nor a tree.
+From the start it takes one Hit-and-Run step after another, until a sample reaches the goal. Each
+step lies on a chord, so the chain itself is the path: no sampler of the space and no tree is
+needed.
 """
 
 from dataclasses import dataclass, field
@@ -31,7 +32,7 @@ class HitAndRun:
 
 @dataclass
 class HitAndRunSearch:
-    """A chain under way; a transition is one step."""
+    """Search by one chain; a transition is one step."""
 
     problem: Problem
     rng: Stream
@@ -66,7 +67,7 @@ class HitAndRunSearch:
 
     @property
     def counts(self) -> dict[str, int]:
-        """Draws that rounded onto the boundary and were drawn again."""
+        """Number of draws that rounded onto the boundary and were drawn again."""
         return {'redraws': self.redraws}
 
     def advance(self, n_iterations: int) -> None:
@@ -83,7 +84,7 @@ class HitAndRunSearch:
 
 @kernel
 def _walk(problem, rng, chain, length, end):
-    """Walk on from the last of ``length`` samples until the goal or ``end`` samples."""
+    """Walk from the last of ``length`` samples until the goal is reached or there are ``end``."""
     problem, rng, chain = borrowed(problem), borrowed(rng), borrowed(chain)
     redraws = 0
     for k in range(length, end):

@@ -1,17 +1,17 @@
 """
-Trees of Hit-and-Run steps from start and goal, joined as soon as they see each other.
+Trees of Hit-and-Run steps from start and goal, joined by the first free segment between them.
 
 The paper's chain explores fast but wanders, and its path is the whole walk; it leaves hybrids with
-short paths to the future. Here each end of the request grows a tree. A vertex at its frontier
-takes a step like Hit-and-Run's that looks ahead: of a few uniform directions the one with the
-longest free ray, and a uniform point on the outer part of that ray. Each new vertex looks for the
-other tree among the vertices around it and at one anywhere.
+short paths to the future. Here each end of the request grows a tree. A vertex at the frontier of
+its tree takes a step like Hit-and-Run's, but with foresight: of a few uniform directions the one
+with the longest free ray, and a uniform point on the outer part of that ray. For each new vertex
+segments to the other tree are tested: to the vertices around it, and to one anywhere.
 """
 
 from dataclasses import dataclass, field
 from typing import ClassVar, NamedTuple
 
-from hnr_planner.core.checks import check_number, Floats
+from hnr_planner.core.checks import Floats
 from hnr_planner.core.kernels.borrowed import borrowed
 from hnr_planner.core.kernels.kernel import kernel
 from hnr_planner.core.kernels.streams import Stream, uniform
@@ -22,67 +22,54 @@ from hnr_planner.core.planning.planners.frontier import (
     empty_frontier,
     Frontier,
 )
-from hnr_planner.core.planning.planners.two_trees import TwoTreeSearch
+from hnr_planner.core.planning.planners.two_trees import (
+    add_vertex,
+    empty_trees,
+    first_free_row,
+    TreePair,
+    TwoTreeSearch,
+    with_rows,
+)
 from hnr_planner.core.sampling.draws import draw_between, draw_direction
 from hnr_planner.core.spaces.primitives import component, first_exit, segment_is_free
 from hnr_planner.core.trees import NONE
 import numpy as np
 from numpy.typing import NDArray
 
-#: Uniform directions that a step chooses from, and the part of the longest ray that it leaves
-#: behind it at least: the best of 1 to 6 and of 0 to .9 on building maps and spirals.
-RAYS = 4
+#: Uniform directions that a step chooses from, and the fraction of the longest ray that it skips:
+#: the best of 1 to 6 and of 0 to .9 on building maps and spirals.
+N_RAYS = 4
 INNER = 0.7
 
 
-class Trees(NamedTuple):
+class FrontierTrees(NamedTuple):
     """
-    Two trees in one table: tree 0 grows from the start, tree 1 from the goal.
+    Two trees, and what their steps need to know of them.
 
     Attributes
     ----------
-    vertices : (rows, dim)
-        Vertices of both trees, oldest first.
-    parents : (rows,) int64
-        Row of each vertex's parent, NONE for the roots.
+    table : TreePair
+        Their vertices.
     members : (rows, 2) int64
         Rows of the vertices of each tree.
-    sizes : (2,) int64
-        Vertices of each tree.
     frontier : Frontier
-        Where each tree should grow.
+        The vertices from which each tree should grow.
     directions : (2, dim)
-        Room for a step to work in.
+        Working memory of a step.
 
     """
 
-    vertices: Floats
-    parents: NDArray[np.int64]
+    table: TreePair
     members: NDArray[np.int64]
-    sizes: NDArray[np.int64]
     frontier: Frontier
     directions: Floats
 
 
 @dataclass(frozen=True)
 class HitAndRunConnect:
-    """
-    Trees of Hit-and-Run steps from both ends.
-
-    Attributes
-    ----------
-    clearance : float
-        Distance to obstacles [m] that the path keeps where there is room; narrower places are
-        passed in their middle. 0 for the shortest path.
-
-    """
-
-    clearance: float = 0.0
+    """Trees of Hit-and-Run steps from both ends. It has no settings."""
 
     name: ClassVar[str] = 'hit_and_run_connect'
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, 'clearance', check_number('clearance', self.clearance, 0.0, 1e6))
 
     def start(self, problem: Problem, rng: Stream) -> 'HitAndRunConnectSearch':
         """Start a tree at each end."""
@@ -91,23 +78,19 @@ class HitAndRunConnect:
 
 @dataclass
 class HitAndRunConnectSearch(TwoTreeSearch):
-    """Two trees under way; a transition is one step of one of them, in turn."""
+    """Search with two trees; a transition is one step of one of them, in turn."""
 
     _redraws: int = field(init=False, default=0)
     #: Planted with the first steps: one call of compiled code is worth two of Python's.
-    _trees: Trees | None = field(init=False, default=None)
-    _n_roots: int = field(init=False, default=0)
+    _trees: FrontierTrees | None = field(init=False, default=None)
 
     @property
-    def _table(self) -> tuple[Floats, NDArray[np.int64]]:
-        if self._trees is None:
-            return self.problem.start[np.newaxis], np.array([NONE])
-        rows = self._n_roots + self.iterations
-        return self._trees.vertices[:rows], self._trees.parents[:rows]
+    def _table(self) -> TreePair | None:
+        return None if self._trees is None else self._trees.table
 
     @property
     def counts(self) -> dict[str, int]:
-        """Draws that rounded onto the boundary and were drawn again."""
+        """Number of draws that rounded onto the boundary and were drawn again."""
         return {'redraws': self._redraws}
 
     def advance(self, n_iterations: int) -> None:
@@ -115,68 +98,61 @@ class HitAndRunConnectSearch(TwoTreeSearch):
         if self.solved:
             return
         if self._trees is None:
-            self._trees, self._n_roots, grown = _begin(self.problem, self.rng, n_iterations)
+            self._trees, grown = _begin(self.problem, self.rng, n_iterations)
         else:
-            rows = self._n_roots + self.iterations + n_iterations
-            self._trees = _roomy(self._trees, rows)
+            rows = len(self.samples) + n_iterations
+            self._trees = _with_rows(self._trees, rows)
             grown = _grow(self.problem, self._trees, self.rng, self.iterations, n_iterations)
         self._ends, taken, redraws = grown
         self.iterations += taken
         self._redraws += redraws
 
 
-def _roomy(trees: Trees, rows: int) -> Trees:
+def _with_rows(trees: FrontierTrees, rows: int) -> FrontierTrees:
     """Return the trees with room for so many rows at least."""
-    if len(trees.parents) >= rows:
-        return trees
-    return trees._replace(
-        vertices=with_room(trees.vertices, rows),
-        parents=with_room(trees.parents, rows),
-        members=with_room(trees.members, rows),
-    )
+    table = with_rows(trees.table, rows)
+    return trees._replace(table=table, members=with_room(trees.members, len(table.parents)))
 
 
 @kernel
 def _begin(problem, rng, n_iterations):
-    """Plant the trees and take their first steps: (trees, roots, what ``_grow`` returns)."""
-    trees, n_roots = _plant(problem, 2 + n_iterations)
-    return trees, n_roots, _grow(problem, trees, rng, 0, n_iterations)
+    """Plant the trees and take their first steps; return the trees, and as ``_grow``."""
+    trees = _plant(problem, 2 + n_iterations)
+    return trees, _grow(problem, trees, rng, 0, n_iterations)
 
 
 @kernel
 def _plant(problem, rows):
-    """Plant a root at the start, and one at a goal that it can reach: (trees, roots)."""
-    trees = Trees(
-        np.empty((rows, len(problem.start))),
-        np.empty(rows, dtype=np.int64),
+    """Return trees with a root at the start, and one at the goal where a path leads there."""
+    trees = FrontierTrees(
+        empty_trees(rows, len(problem.start)),
         np.empty((rows, 2), dtype=np.int64),
-        np.zeros(2, dtype=np.int64),
-        empty_frontier(problem.lower, problem.upper, problem.clearance),
+        empty_frontier(problem.lower, problem.upper, problem.typical_clearance),
         np.empty((2, len(problem.start))),
     )
-    trees.vertices[0] = problem.start
+    trees.table.vertices[0] = problem.start
     _add(trees, 0, NONE)
-    if component(problem.space, problem.goal) != component(problem.space, problem.start):
-        return trees, 1
-    trees.vertices[1] = problem.goal
-    _add(trees, 1, NONE)
-    return trees, 2
+    if component(problem.space, problem.goal) == component(problem.space, problem.start):
+        trees.table.vertices[1] = problem.goal
+        _add(trees, 1, NONE)
+    return trees
 
 
 @kernel
 def _grow(problem, trees, rng, turn, n_iterations):
-    """Grow the trees in turn: ((row at the start's tree, row at the goal's), steps, redraws)."""
+    """Grow the trees in turn; return the rows that connect them (NONE, NONE), steps, redraws."""
     problem, trees, rng = borrowed(problem), borrowed(trees), borrowed(rng)
-    n_trees = 2 if trees.sizes[1] > 0 else 1
+    vertices = trees.table.vertices
+    n_trees = 2 if trees.table.sizes[1] > 0 else 1
     redraws = 0
     for i in range(n_iterations):
         tree = (turn + i) % n_trees
-        row = trees.sizes[0] + trees.sizes[1]
+        row = first_free_row(trees.table)
         parent = choose_vertex(trees.frontier, tree, rng)
-        x, y = trees.vertices[parent], trees.vertices[row]
+        x, y = vertices[parent], vertices[row]
         redraws += _step(problem.space, x, rng, trees.directions, y)
-        at = _add(trees, tree, parent)
-        met = _meet(problem.space, trees, row, at, 1 - tree, rng)
+        bin_number = _add(trees, tree, parent)
+        met = _meet(problem.space, trees, row, bin_number, 1 - tree, rng)
         if met != NONE:
             return ((row, met) if tree == 0 else (met, row)), i + 1, redraws
         if tree == 0 and problem.goal_radius > 0.0 and reaches_goal(problem, y):
@@ -186,9 +162,9 @@ def _grow(problem, trees, rng, turn, n_iterations):
 
 @kernel
 def _step(space, x, rng, directions, y):
-    """Step along the longest of a few uniform rays, to a uniform point of its outer part."""
+    """Step from ``x`` along the longest of a few uniform rays; write the end ``y`` (dim,)."""
     u, best, longest = directions[0], directions[1], 0.0
-    for _ in range(RAYS):
+    for _ in range(N_RAYS):
         draw_direction(rng, u)
         reach = first_exit(space, x, u, 0.0, np.inf)
         if reach > longest:
@@ -200,23 +176,22 @@ def _step(space, x, rng, directions, y):
 @kernel
 def _add(trees, tree, parent):
     """Make the vertex written in the first free row one of a tree; return its bin."""
-    row = trees.sizes[0] + trees.sizes[1]
-    trees.parents[row] = parent
-    trees.members[trees.sizes[tree], tree] = row
-    trees.sizes[tree] += 1
-    return add_to_bin(trees.frontier, tree, trees.vertices[row], row)
+    trees.members[trees.table.sizes[tree], tree] = first_free_row(trees.table)
+    row = add_vertex(trees.table, tree, parent)
+    return add_to_bin(trees.frontier, tree, trees.table.vertices[row], row)
 
 
 @kernel
-def _meet(space, trees, row, at, other, rng):
-    """Vertex of the other tree that is seen: the newest in a bin around, or one anywhere."""
-    if trees.sizes[other] == 0:
+def _meet(space, trees, row, bin_number, other, rng):
+    """Return a visible vertex of the other tree: the newest in a bin around, or one anywhere."""
+    vertices, size = trees.table.vertices, trees.table.sizes[other]
+    if size == 0:
         return NONE
-    newest, columns = trees.frontier.newest, trees.frontier.columns
+    newest, columns = trees.frontier.newest, trees.frontier.bins.columns
     for below in (-columns, 0, columns):
         for beside in (-1, 0, 1):
-            k = newest[other, at + below + beside]
-            if k != NONE and segment_is_free(space, trees.vertices[row], trees.vertices[k]):
+            k = newest[other, bin_number + below + beside]
+            if k != NONE and segment_is_free(space, vertices[row], vertices[k]):
                 return k
-    k = trees.members[int(trees.sizes[other] * uniform(rng)), other]
-    return k if segment_is_free(space, trees.vertices[row], trees.vertices[k]) else NONE
+    k = trees.members[int(size * uniform(rng)), other]
+    return k if segment_is_free(space, vertices[row], vertices[k]) else NONE

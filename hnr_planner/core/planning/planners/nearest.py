@@ -1,5 +1,5 @@
 """
-Exact nearest neighbours of growing sets of points.
+Trees of boxes: exact nearest neighbours of growing sets of points.
 
 A tree of boxes: each node halves its box in the middle, along one axis after the other, and each
 leaf holds a short list of points. Boxes halve whatever the order in which points come, so that a
@@ -16,14 +16,15 @@ from hnr_planner.core.trees import NONE
 import numpy as np
 from numpy.typing import NDArray
 
+#: Points in a leaf, above which it is halved.
 LEAF_SIZE = 8
-#: Points nearer to each other than a box of this depth stay in one leaf.
+#: Depth of the deepest leaves: points nearer to each other than their size stay together.
 DEPTH_MAX = 100
 
 
 class BoxTree(NamedTuple):
     """
-    Points in leaves of trees of boxes, one tree for each root.
+    Sets of points in trees of boxes, one tree for each root.
 
     Attributes
     ----------
@@ -32,7 +33,7 @@ class BoxTree(NamedTuple):
     child : (nodes, 2) int32
         Lower and upper half; NONE in a leaf.
     split : (nodes,)
-        Where the node is halved.
+        Coordinate at which the node is halved.
     first : (nodes,) int32
         First point of a leaf's list; NONE when it is empty.
     following : (points,) int32
@@ -42,8 +43,8 @@ class BoxTree(NamedTuple):
     n_nodes : (1,) int64
         Nodes in use.
     waiting : (DEPTH_MAX + 2, 3)
-        Room for a query's list of halves still to visit, so that it need not ask for memory: node,
-        depth, and squared distance to the plane before it. A tree answers one query at a time.
+        Working memory of a query, its list of halves still to visit: node, depth, and squared
+        distance to the plane before it. A tree serves one query at a time.
 
     """
 
@@ -59,7 +60,7 @@ class BoxTree(NamedTuple):
 
 
 def empty_box_tree(lower: Floats, upper: Floats, capacity: int, n_roots: int = 1) -> BoxTree:
-    """Return ``n_roots`` trees without points that have room for ``capacity`` of them in all."""
+    """Return ``n_roots`` trees without points, with room for ``capacity`` of them in all."""
     nodes = 2 * capacity + n_roots
     return BoxTree(
         lower=lower,
@@ -107,6 +108,7 @@ def insert(tree, points, k, root=0):
 
 @kernel
 def _push(tree, leaf, k):
+    """Put point ``k`` first in the list of a leaf."""
     tree.following[k] = tree.first[leaf]
     tree.first[leaf] = k
     tree.size[leaf] += 1
@@ -114,7 +116,7 @@ def _push(tree, leaf, k):
 
 @kernel
 def _halve(tree, points, leaf, axis, middle):
-    """Make ``leaf`` an inner node and hand its points to its two halves."""
+    """Make ``leaf`` an inner node, and move its points to its two halves."""
     new = tree.n_nodes[0]
     tree.n_nodes[0] += 2
     k = tree.first[leaf]
@@ -128,7 +130,7 @@ def _halve(tree, points, leaf, axis, middle):
 
 @kernel
 def nearest(tree, points, x, root=0):
-    """Index of a root's point nearest to ``x``; the first one where several are as near."""
+    """Return the lowest index of a root's points that are nearest to ``x`` (dim,)."""
     dim = points.shape[1]
     waiting = tree.waiting
     waiting[0, 0], waiting[0, 1], waiting[0, 2] = root, 0.0, 0.0

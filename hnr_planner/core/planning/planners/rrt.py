@@ -2,7 +2,7 @@
 RRT (paper, Section 1; LaValle 1998): a tree that grows towards uniform points of the space.
 
 A proposal is uniform in the space; the nearest vertex of the tree is extended towards it, to the
-proposal itself or to the farthest point that the vertex sees, and at most ``max_step`` far.
+proposal itself or to the farthest point visible from the vertex, and at most ``max_step`` far.
 """
 
 from dataclasses import dataclass, field
@@ -27,8 +27,8 @@ from hnr_planner.core.trees import branch
 import numpy as np
 from numpy.typing import NDArray
 
-#: Proposals drawn in a row for each transition asked for: most of the box may be no part of the
-#: space, and a search that only rejects has to come back to be stopped all the same.
+#: Proposals drawn in a row for each transition asked for: most of the box may lie outside the
+#: space, and a search that only rejects has to return so that it can be stopped.
 PROPOSALS_PER_ITERATION = 64
 
 
@@ -58,7 +58,7 @@ class RRT:
 
 @dataclass
 class RRTSearch:
-    """A tree under way; a transition is one proposal inside the space and its extension."""
+    """Search by one tree; a transition is one proposal inside the space and its extension."""
 
     problem: Problem
     rng: Stream
@@ -96,7 +96,7 @@ class RRTSearch:
 
     @property
     def counts(self) -> dict[str, int]:
-        """Uniform proposals that fell outside the space: the price of its sampler."""
+        """Number of uniform proposals that fell outside the space."""
         return {'rejected_proposals': self.rejected}
 
     def advance(self, n_iterations: int) -> None:
@@ -126,7 +126,7 @@ class RRTSearch:
 
 @kernel
 def _grow(problem, max_step, rng, vertices, parents, n_vertices, tree, n_iterations):
-    """Grow the tree; return vertices, transitions, rejected proposals, and whether it is done."""
+    """Grow the tree; return vertices, transitions, rejected proposals, whether it is solved."""
     problem, rng, tree = borrowed(problem), borrowed(rng), borrowed(tree)
     vertices, parents = borrowed(vertices), borrowed(parents)
     proposal, iterations, rejected = np.empty(len(problem.start)), 0, 0
@@ -150,20 +150,20 @@ def _grow(problem, max_step, rng, vertices, parents, n_vertices, tree, n_iterati
 
 @kernel
 def draw_in_box(lower, upper, rng, x):
-    """Draw ``x`` uniformly from a box."""
+    """Draw ``x`` (dim,) uniformly from the box from ``lower`` to ``upper``."""
     for i in range(len(x)):
         x[i] = lower[i] + (upper[i] - lower[i]) * uniform(rng)
 
 
 @kernel
 def extend(problem, max_step, vertex, proposal, end):
-    """Write the end of the extension; False when it is shorter than the margin."""
+    """Write the ``end`` (dim,) of an extension; return False where it is below the margin."""
     u = proposal - vertex
     length = norm(u)
     if length <= problem.margin:
         return False
     reach = first_exit(problem.space, vertex, u, 0.0, 1.0)
-    # The proposal where the vertex sees it, or else the farthest visible point.
+    # The proposal where it is visible from the vertex, or else the farthest visible point.
     s = 1.0 if reach > 1.0 else reach - problem.margin / length
     s = min(s, max_step / length)
     # A wall met at a grazing angle is nearer than the margin along the ray: go back a little more.

@@ -11,12 +11,12 @@ from dataclasses import dataclass, field
 import math
 from typing import ClassVar, NamedTuple
 
-from hnr_planner.core.checks import check_positive, Floats
+from hnr_planner.core.checks import check_positive
 from hnr_planner.core.kernels.borrowed import borrowed
 from hnr_planner.core.kernels.kernel import kernel
 from hnr_planner.core.kernels.streams import Stream
 from hnr_planner.core.lengths import norm
-from hnr_planner.core.planning.planner import Problem, reaches_goal, with_room
+from hnr_planner.core.planning.planner import Problem, reaches_goal
 from hnr_planner.core.planning.planners.nearest import (
     BoxTree,
     empty_box_tree,
@@ -25,32 +25,35 @@ from hnr_planner.core.planning.planners.nearest import (
     nearest,
 )
 from hnr_planner.core.planning.planners.rrt import draw_in_box
-from hnr_planner.core.planning.planners.two_trees import TwoTreeSearch
+from hnr_planner.core.planning.planners.two_trees import (
+    add_vertex,
+    empty_trees,
+    first_free_row,
+    TreePair,
+    TwoTreeSearch,
+    with_rows,
+)
 from hnr_planner.core.spaces.primitives import component, segment_is_free
 from hnr_planner.core.trees import NONE
 import numpy as np
 from numpy.typing import NDArray
 
-#: Longest step when none is given, as a part of the box's diagonal.
+#: Longest step when none is given, as a fraction of the box's diagonal.
 STEP = 0.2
-#: Vertices that there is room for at first.
+#: Rows of the table at first.
 ROOM = 64
-#: What becomes of a step: it is not free, it is free, or it is free and arrives.
+#: Outcomes of a step: it is not free, it is free, or it is free and arrives.
 TRAPPED, ADVANCED, REACHED = 0, 1, 2
 
 
-class Trees(NamedTuple):
+class BoxTrees(NamedTuple):
     """
-    Two trees in one table: tree 0 grows from the start, tree 1 from the goal.
+    Two trees, and what their steps need to know of them.
 
     Attributes
     ----------
-    vertices : (rows, dim)
-        Vertices of both trees, oldest first.
-    parents : (rows,) int64
-        Row of each vertex's parent, NONE for the roots.
-    size : (1,) int64
-        Rows in use.
+    table : TreePair
+        Their vertices.
     boxes : BoxTree
         The vertices, to find a tree's nearest; the trees are its roots.
     turn : (1,) int64
@@ -61,9 +64,7 @@ class Trees(NamedTuple):
 
     """
 
-    vertices: Floats
-    parents: NDArray[np.int64]
-    size: NDArray[np.int64]
+    table: TreePair
     boxes: BoxTree
     turn: NDArray[np.int64]
     drawn: NDArray[np.int64]
@@ -100,32 +101,28 @@ class RRTConnect:
 
 @dataclass
 class RRTConnectSearch(TwoTreeSearch):
-    """Two trees under way; a transition is one step of one of them, free or not."""
+    """Search with two trees; a transition is one step of one of them, free or not."""
 
     max_step: float
-    _trees: Trees = field(init=False)
-    _n_trees: int = field(init=False)
+    _trees: BoxTrees = field(init=False)
 
     def __post_init__(self) -> None:
         problem = self.problem
-        self._trees = Trees(
-            vertices=np.empty((ROOM, len(problem.start))),
-            parents=np.empty(ROOM, dtype=np.int64),
-            size=np.zeros(1, dtype=np.int64),
+        self._trees = BoxTrees(
+            table=empty_trees(ROOM, len(problem.start)),
             boxes=empty_box_tree(problem.lower, problem.upper, ROOM, n_roots=2),
             turn=np.zeros(1, dtype=np.int64),
             drawn=np.full(2, NONE),
         )
-        self._n_trees = _plant(problem, self._trees)
+        _plant(problem, self._trees)
 
     @property
-    def _table(self) -> tuple[Floats, NDArray[np.int64]]:
-        rows = int(self._trees.size[0])
-        return self._trees.vertices[:rows], self._trees.parents[:rows]
+    def _table(self) -> TreePair:
+        return self._trees.table
 
     @property
     def counts(self) -> dict[str, int]:
-        """Nothing else is counted."""
+        """No further counts."""
         return {}
 
     def advance(self, n_iterations: int) -> None:
@@ -137,7 +134,6 @@ class RRTConnectSearch(TwoTreeSearch):
                 self.problem,
                 self.max_step,
                 self._trees,
-                self._n_trees,
                 self.rng,
                 goal - self.iterations,
             )
@@ -148,33 +144,30 @@ class RRTConnectSearch(TwoTreeSearch):
 
     def _make_room(self) -> None:
         trees = self._trees
-        vertices = with_room(trees.vertices, len(trees.vertices) + 1)
-        self._trees = trees._replace(
-            vertices=vertices,
-            parents=with_room(trees.parents, len(vertices)),
-            boxes=grown(trees.boxes, len(vertices)),
-        )
+        table = with_rows(trees.table, len(trees.table.parents) + 1)
+        boxes = grown(trees.boxes, len(table.parents))
+        self._trees = trees._replace(table=table, boxes=boxes)
 
 
 @kernel
 def _plant(problem, trees):
-    """Plant a root at the start, and one at a goal that it can reach; return how many."""
-    trees.vertices[0] = problem.start
+    """Plant a root at the start, and one at the goal where a path leads there."""
+    trees.table.vertices[0] = problem.start
     _add(trees, 0, NONE)
-    if component(problem.space, problem.goal) != component(problem.space, problem.start):
-        return 1
-    trees.vertices[1] = problem.goal
-    _add(trees, 1, NONE)
-    return 2
+    if component(problem.space, problem.goal) == component(problem.space, problem.start):
+        trees.table.vertices[1] = problem.goal
+        _add(trees, 1, NONE)
 
 
 @kernel
-def _grow(problem, max_step, trees, n_trees, rng, n_iterations):
+def _grow(problem, max_step, trees, rng, n_iterations):
     """Take steps until the trees meet or have no room: (the ends that met, steps taken)."""
     problem, trees, rng = borrowed(problem), borrowed(trees), borrowed(rng)
-    towards, vertices, drawn = np.empty(len(problem.start)), trees.vertices, trees.drawn
+    towards, vertices, drawn = np.empty(len(problem.start)), trees.table.vertices, trees.drawn
+    n_trees = 2 if trees.table.sizes[1] > 0 else 1
     for i in range(n_iterations):
-        if trees.size[0] == len(vertices):
+        end = first_free_row(trees.table)
+        if end == len(vertices):
             return (NONE, NONE), i
         tree, near, target = trees.turn[0], drawn[0], drawn[1]
         if target == NONE:
@@ -183,7 +176,7 @@ def _grow(problem, max_step, trees, n_trees, rng, n_iterations):
             trees.turn[0] = (tree + 1) % n_trees
         else:
             towards[:] = vertices[target]
-        outcome = _step(problem, max_step, vertices[near], towards, vertices[trees.size[0]])
+        outcome = _step(problem, max_step, vertices[near], towards, vertices[end])
         if outcome == REACHED and target != NONE:
             return ((near, target) if tree == 0 else (target, near)), i + 1
         if outcome == TRAPPED:
@@ -220,8 +213,6 @@ def _step(problem, max_step, vertex, target, end):
 @kernel
 def _add(trees, tree, parent):
     """Make the vertex written in the first free row one of a tree; return that row."""
-    row = trees.size[0]
-    trees.parents[row] = parent
-    insert(trees.boxes, trees.vertices, row, tree)
-    trees.size[0] += 1
+    row = add_vertex(trees.table, tree, parent)
+    insert(trees.boxes, trees.table.vertices, row, tree)
     return row

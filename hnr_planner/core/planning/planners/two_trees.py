@@ -1,27 +1,78 @@
 """
-What searches with a tree at each end share: both trees in one table, and the path through both.
+What searches with a tree at each end share: a table of both trees, and the path through both.
 
 Row 0 is the root of the start's tree; the goal's, where there is one, follows. A search is solved
-when a vertex of one tree sees one of the other, or when the only tree has come into the region.
+when a vertex of one tree is connected to one of the other, or when the only tree has come into
+the goal region.
 """
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass, field
-from typing import ClassVar
+from typing import ClassVar, NamedTuple
 
 from hnr_planner.core.checks import Floats
 from hnr_planner.core.kernels.kernel import kernel
 from hnr_planner.core.kernels.streams import Stream
-from hnr_planner.core.planning.planner import Problem, to_goal
+from hnr_planner.core.planning.planner import Problem, to_goal, with_room
 from hnr_planner.core.trees import branch, NONE
 import numpy as np
 from numpy.typing import NDArray
 
 
+class TreePair(NamedTuple):
+    """
+    Two trees in one table: tree 0 grows from the start, tree 1 from the goal.
+
+    Attributes
+    ----------
+    vertices : (rows, dim)
+        Vertices of both trees, oldest first.
+    parents : (rows,) int64
+        Row of each vertex's parent, NONE for the roots.
+    sizes : (2,) int64
+        Number of vertices of each tree.
+
+    """
+
+    vertices: Floats
+    parents: NDArray[np.int64]
+    sizes: NDArray[np.int64]
+
+
+@kernel
+def empty_trees(rows, dim):
+    """Return trees without vertices, with room for so many rows."""
+    vertices, parents = np.empty((rows, dim)), np.empty(rows, dtype=np.int64)
+    return TreePair(vertices, parents, np.zeros(2, dtype=np.int64))
+
+
+@kernel
+def first_free_row(trees):
+    """Return the row of the next vertex."""
+    return trees.sizes[0] + trees.sizes[1]
+
+
+@kernel
+def add_vertex(trees, tree, parent):
+    """Make the vertex written in the first free row one of a tree; return that row."""
+    row = first_free_row(trees)
+    trees.parents[row] = parent
+    trees.sizes[tree] += 1
+    return row
+
+
+def with_rows(trees: TreePair, rows: int) -> TreePair:
+    """Return the trees with room for so many rows at least."""
+    if len(trees.parents) >= rows:
+        return trees
+    vertices = with_room(trees.vertices, rows)
+    return trees._replace(vertices=vertices, parents=with_room(trees.parents, len(vertices)))
+
+
 @dataclass
 class TwoTreeSearch(ABC):
     """
-    Two trees under way.
+    Search with a tree at each end.
 
     A goal region whose centre cannot be reached has no second tree: the first has to find into it.
 
@@ -30,7 +81,7 @@ class TwoTreeSearch(ABC):
     problem : Problem
         What is searched for.
     rng : Stream
-        Where every draw comes from.
+        Stream of every draw.
     iterations : int
         Transitions handled.
 
@@ -40,13 +91,13 @@ class TwoTreeSearch(ABC):
     rng: Stream
     iterations: int = field(init=False, default=0)
     taut: ClassVar[bool] = False
-    #: The vertices that see each other, the start tree's first; (k, NONE) for one in the region.
+    #: Vertices that connect the trees, the start tree's first; (k, NONE) for one in the region.
     _ends: tuple[int, int] = field(init=False, default=(NONE, NONE))
 
     @property
     @abstractmethod
-    def _table(self) -> tuple[Floats, NDArray[np.int64]]:
-        """Return vertices (k, dim) and parents (k,) of both trees, oldest first."""
+    def _table(self) -> TreePair | None:
+        """Return the trees; None before the first step."""
 
     @property
     def solved(self) -> bool:
@@ -55,23 +106,27 @@ class TwoTreeSearch(ABC):
 
     @property
     def samples(self) -> Floats:
-        """The vertices (k, dim) of both trees."""
-        return self._table[0]
+        """The vertices (k, dim) of both trees, oldest first."""
+        trees = self._table
+        if trees is None:
+            return self.problem.start[np.newaxis]
+        return trees.vertices[: int(trees.sizes.sum())]
 
     @property
     def parents(self) -> NDArray[np.int64]:
         """Index (k,) of the vertex that each was reached from; -1 for the roots."""
-        return self._table[1]
+        trees = self._table
+        return np.array([NONE]) if trees is None else trees.parents[: int(trees.sizes.sum())]
 
     @property
     def path(self) -> Floats:
-        """Return the branch of each tree that leads to where they met."""
-        through = _through(*self._table, *self._ends)
+        """The branch (m, dim) of each tree that leads to where they met."""
+        through = _through(self.samples, self.parents, *self._ends)
         return through if self._ends[1] != NONE else to_goal(self.problem, through)
 
 
 @kernel
 def _through(vertices, parents, first, second):
-    """Path (m, dim) from the root of ``first`` to it, and from ``second`` back to its root."""
+    """Return the path (m, dim) from the root of ``first`` over ``second`` to the root of that."""
     ahead, back = branch(vertices, parents, first), branch(vertices, parents, second)
     return np.concatenate((ahead, back[::-1]))

@@ -1,9 +1,9 @@
 """
-Paths that stand off from walls where there is room, and pass narrow doors all the same.
+Increase the clearance of a path where there is room, and pass narrow doors all the same.
 
-A metre of a path costs 1 metre where the wall is as far as wished, ``clearance``, and
+A metre of a path costs 1 metre where the wall is at least the wanted ``clearance`` away, and
 ``1 + WEIGHT (clearance / d - 1)`` metres at a distance ``d`` below. So a detour pays where it
-brings the path away from a wall, most of all where that is near, and in a door the middle is best.
+leads the path away from a wall, most of all where that is near, and in a door the middle is best.
 The path gets vertices where it comes too near; each is moved across the path while that lowers the
 cost, and those that are not needed any more are dropped.
 """
@@ -25,33 +25,33 @@ from hnr_planner.core.spaces.primitives import segment_is_free
 from hnr_planner.core.spaces.space import Space
 import numpy as np
 
-#: Metres that a metre costs beyond its own where the wall is at half the clearance; and the part
-#: of the clearance below which nearer does not count as worse.
+#: Added cost of a metre where the wall is at half the clearance [m]; and the fraction of the
+#: clearance below which the cost rises no further.
 WEIGHT, NEAREST = 2.0, 0.01
-#: A path is looked at, and gets vertices, as often as the wall is near: about as far apart as it
-#: is away, within these bounds in units of the typical clearance of the space.
+#: Bounds on the distance between points at which the clearance of a path is measured, and between
+#: its vertices, in units of the typical clearance of the space: both follow that of the wall.
 FINEST, COARSEST = 0.125, 1.0
 #: Passes of moving all vertices in a row.
 PASSES = 10
-#: A step across the path is the coarsest distance at first, and halved where it gains nothing,
-#: down to this part of the finest.
+#: Shortest step across the path, as a fraction of the finest distance: steps have the coarsest at
+#: first, and are halved where they gain nothing.
 LEAST_STEP = 0.125
-#: Vertices are dropped where that adds no more than this part of the cost.
+#: Fraction of the cost that dropping a vertex may add.
 ADDED = 5e-4
 
 
 class ClearanceCost(NamedTuple):
     """
-    How far from walls a path should be.
+    Cost of a path that should keep a clearance.
 
     Attributes
     ----------
     walls : array
         The space's ``walls``.
     clearance : float
-        Distance wished, kernel frame.
+        Distance from walls that is wanted, kernel frame.
     finest, coarsest : float
-        Bounds on the distance between two looks at the walls, kernel frame.
+        Bounds on the distance between points where the clearance is measured, kernel frame.
 
     """
 
@@ -62,41 +62,42 @@ class ClearanceCost(NamedTuple):
 
 
 def clearance_cost(space: Space, clearance: float) -> ClearanceCost:
-    """Return the wish for a clearance above 0 in the caller's units [m]."""
+    """Return the cost for a clearance above 0 in the caller's units [m]."""
     finest, coarsest = FINEST * space.typical_clearance, COARSEST * space.typical_clearance
-    wished = min(clearance / space.scale, FARTHEST_WALL)
-    return ClearanceCost(space.walls, wished, finest, max(min(coarsest, wished / 2.0), finest))
+    wanted = min(clearance / space.scale, FARTHEST_WALL)
+    return ClearanceCost(space.walls, wanted, finest, max(min(coarsest, wanted / 2.0), finest))
 
 
 def increase_clearance(
-    space: Space, path: Floats, clearance: float, limits: Budget, islands: Islands = NO_ISLANDS
+    space: Space, path: Floats, clearance: float, budget: Budget, islands: Islands = NO_ISLANDS
 ) -> Floats:
     """
-    Move a free path (m, dim) of the caller's frame away from walls, within limits; the same ends.
+    Move a free path (m, dim) of the caller's frame away from walls, within the budget.
 
-    It passes each of the ``islands`` on the side where it did before, and never costs more.
+    The ends stay. It passes each of the ``islands`` on the side where it did before, and never
+    costs more.
     """
-    wish = clearance_cost(space, clearance)
+    cost = clearance_cost(space, clearance)
     before = points = space.to_kernel(path)
     # Away from walls first, with few vertices; then with as many as narrow places need.
-    for each in (wish._replace(finest=wish.coarsest), wish):
+    for each in (cost._replace(finest=cost.coarsest), cost):
         points = spread(each, points)
-        _move_all(space, islands, each, points, limits)
+        _move_all(space, islands, each, points, budget)
         points = drop(space.data, islands, each, points)
-    _move_all(space, islands, wish, points, limits)
+    _move_all(space, islands, cost, points, budget)
     moved = space.from_kernel(points)
     moved[0], moved[-1] = path[0], path[-1]
-    is_better = segment_costs(wish, points).sum() < segment_costs(wish, before).sum()
+    is_better = segment_costs(cost, points).sum() < segment_costs(cost, before).sum()
     return moved if is_better and space.is_path_free(moved) else path
 
 
 def _move_all(
-    space: Space, islands: Islands, wish: ClearanceCost, points: Floats, limits: Budget
+    space: Space, islands: Islands, cost: ClearanceCost, points: Floats, budget: Budget
 ) -> None:
-    """Move the vertices, in passes, until no step is left that is worth it."""
-    steps, costs = np.full(len(points), wish.coarsest), segment_costs(wish, points)
+    """Move the vertices, in passes, until no step lowers the cost."""
+    steps, costs = np.full(len(points), cost.coarsest), segment_costs(cost, points)
     for _ in range(PASSES):
-        if limits.stop() is not None or not move(space.data, islands, wish, points, costs, steps):
+        if budget.stop() is not None or not move(space.data, islands, cost, points, costs, steps):
             break
 
 
@@ -104,40 +105,40 @@ def path_cost(space: Space, path: Floats, clearance: float) -> float:
     """Return the cost of a path (m, dim) of the caller's frame; its length for clearance 0."""
     if clearance == 0.0:
         return float(path_length(path))
-    wish = clearance_cost(space, clearance)
-    return float(segment_costs(wish, space.to_kernel(path)).sum()) * space.scale
+    cost = clearance_cost(space, clearance)
+    return float(segment_costs(cost, space.to_kernel(path)).sum()) * space.scale
 
 
 @kernel
-def segment_costs(wish, points):
-    """Costs (m,) of the segments to each vertex: their lengths where walls are far enough."""
+def segment_costs(cost, points):
+    """Return the costs (m,) of the segments to each vertex: their length where walls are far."""
     costs = np.zeros(len(points))
     for k in range(1, len(points)):
-        costs[k] = _segment_cost(wish, points[k - 1], points[k], np.inf)
+        costs[k] = _segment_cost(cost, points[k - 1], points[k], np.inf)
     return costs
 
 
 @kernel
-def _segment_cost(wish, a, b, most):
-    """Cost of a segment, looked for until it is known to be above ``most``."""
-    length, done, lacking = distance(a, b), 0.0, 0.0
+def _segment_cost(cost, a, b, most):
+    """Return the cost of the segment a-b, summed until it is above ``most``."""
+    length, covered, lack = distance(a, b), 0.0, 0.0
     if length == 0.0:
         return 0.0
     x = a.copy()
-    room = clearance_within(wish.walls, x, wish.clearance)
-    while done < length and length + WEIGHT * lacking < most:
-        piece = min(min(max(room, wish.finest), wish.coarsest), length - done)
+    gap = clearance_within(cost.walls, x, cost.clearance)
+    while covered < length and length + WEIGHT * lack < most:
+        piece = min(min(max(gap, cost.finest), cost.coarsest), length - covered)
         for i in range(len(x)):
-            x[i] = a[i] + (done + piece / 2.0) / length * (b[i] - a[i])
-        room = clearance_within(wish.walls, x, wish.clearance)
-        lacking += piece * (wish.clearance / max(room, NEAREST * wish.clearance) - 1.0)
-        done += piece
-    return length + WEIGHT * lacking
+            x[i] = a[i] + (covered + piece / 2.0) / length * (b[i] - a[i])
+        gap = clearance_within(cost.walls, x, cost.clearance)
+        lack += piece * (cost.clearance / max(gap, NEAREST * cost.clearance) - 1.0)
+        covered += piece
+    return length + WEIGHT * lack
 
 
 @kernel
-def spread(wish, points):
-    """Path with vertices at both ends of each piece that lacks room, shorter where it has less."""
+def spread(cost, points):
+    """Return the path with vertices at the ends of each piece that lacks clearance."""
     dense, n_dense = np.empty((2 * len(points), points.shape[1])), 1
     dense[0] = points[0]
     for k in range(1, len(points)):
@@ -146,19 +147,19 @@ def spread(wish, points):
             points[k] - points[k - 1],
             distance(points[k - 1], points[k]),
         )
-        done, has_end, end = 0.0, True, a.copy()
-        while done < length:
-            begin, room = end, clearance_within(wish.walls, end, wish.clearance)
-            done = min(done + min(max(2.0 * room, wish.finest), 2.0 * wish.coarsest), length)
-            end = a + done / length * way
+        covered, has_end, end = 0.0, True, a.copy()
+        while covered < length:
+            begin, gap = end, clearance_within(cost.walls, end, cost.clearance)
+            covered = min(covered + min(max(2.0 * gap, cost.finest), 2.0 * cost.coarsest), length)
+            end = a + covered / length * way
             enough = (1.0 + ADDED) * distance(begin, end)
-            lacks = _segment_cost(wish, begin, end, enough) > enough
+            lacks = _segment_cost(cost, begin, end, enough) > enough
             if n_dense + 2 > len(dense):
                 dense = np.concatenate((dense, np.empty_like(dense)))
             if lacks and not has_end:
                 dense[n_dense] = begin
                 n_dense += 1
-            has_end = lacks or done == length
+            has_end = lacks or covered == length
             if has_end:
                 dense[n_dense] = end
                 n_dense += 1
@@ -166,7 +167,7 @@ def spread(wish, points):
 
 
 @kernel
-def move(space, islands, wish, points, costs, steps):
+def move(space, islands, cost, points, costs, steps):
     """
     Move each vertex a step across the path where that costs less, or halve its step.
 
@@ -174,16 +175,16 @@ def move(space, islands, wish, points, costs, steps):
     """
     n_left = 0
     for k in range(1, len(points) - 1):
-        if steps[k] >= LEAST_STEP * wish.finest:
+        if steps[k] >= LEAST_STEP * cost.finest:
             n_left += 1
-            if not _move_one(space, islands, wish, points, costs, k, steps[k]):
+            if not _move_one(space, islands, cost, points, costs, k, steps[k]):
                 steps[k] /= 2.0
     return n_left > 0
 
 
 @kernel
-def _move_one(space, islands, wish, points, costs, k, step):
-    """Move vertex ``k`` to either side of the line between its neighbours if that costs less."""
+def _move_one(space, islands, cost, points, costs, k, step):
+    """Move vertex ``k`` across the line between its neighbours; return whether that costs less."""
     a, x, b, before = points[k - 1], points[k], points[k + 1], costs[k] + costs[k + 1]
     length = distance(a, b)
     if length == 0.0 or before <= length:
@@ -197,9 +198,9 @@ def _move_one(space, islands, wish, points, costs, k, step):
             continue
         if loop_signature(islands, a, x, b) != loop_signature(islands, a, y, b):
             continue
-        first = _segment_cost(wish, a, y, before - second)
+        first = _segment_cost(cost, a, y, before - second)
         if first + second < before:
-            second = _segment_cost(wish, y, b, before - first)
+            second = _segment_cost(cost, y, b, before - first)
             if first + second < before:
                 x[:], costs[k], costs[k + 1] = y, first, second
                 return True
@@ -207,35 +208,26 @@ def _move_one(space, islands, wish, points, costs, k, step):
 
 
 @kernel
-def drop(space, islands, wish, points):
-    """Path without the vertices that can be left out at hardly any cost."""
+def drop(space, islands, cost, points):
+    """Return the path without the vertices that can be dropped at hardly any cost."""
     kept, n_kept, k = np.empty_like(points), 1, 0
     kept[0] = points[0]
     while k < len(points) - 1:
         last = k + 1
         passed = crossings(islands, points[k], points[last])
-        before = _segment_cost(wish, points[k], points[last], np.inf)
+        before = _segment_cost(cost, points[k], points[last], np.inf)
         while last < len(points) - 1:
             passed += crossings(islands, points[last], points[last + 1])
-            before += _segment_cost(wish, points[last], points[last + 1], np.inf)
+            before += _segment_cost(cost, points[last], points[last + 1], np.inf)
             if not segment_is_free(space, points[k], points[last + 1]):
                 break
             if crossings(islands, points[k], points[last + 1]) != passed:
                 break
             most = (1.0 + ADDED) * before
-            if _segment_cost(wish, points[k], points[last + 1], most) > most:
+            if _segment_cost(cost, points[k], points[last + 1], most) > most:
                 break
             last += 1
         k = last
         kept[n_kept] = points[k]
         n_kept += 1
     return kept[:n_kept]
-
-
-def compile_clearance(space: Space, ends: Floats, clearance: float) -> None:
-    """Compile what ``increase_clearance`` runs on this kind of space."""
-    wish = clearance_cost(space, clearance)
-    points = spread(wish, ends)
-    costs = segment_costs(wish, points)
-    move(space.data, NO_ISLANDS, wish, points, costs, np.zeros(len(points)))
-    drop(space.data, NO_ISLANDS, wish, points)

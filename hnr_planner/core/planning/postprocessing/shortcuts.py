@@ -1,12 +1,16 @@
 """
-Ways to shorten a path by visibility, as kernels: each only ever shortens, and counts its tests.
+Kernels that shorten a path by visibility: each only ever shortens, and counts its tests.
 
-``skip``: a vertex is followed by the last one that it sees. ``join``: random points of the path
-are joined. ``pull``: each vertex slides along its two segments until an obstacle is in the way,
-and what corner is left there is cut off, so that the path comes to lie taut around obstacles.
+``relax``: the shortest path over some of the vertices, in their order. ``skip``: a vertex is
+followed by the last one visible from it. ``join``: random points of the path are joined. ``pull``:
+each vertex slides along its two segments until an obstacle is in the way, and the corner left
+there is cut off, so that the path comes to lie taut around obstacles.
 
-With ``islands`` the path stays in its homology class: nothing is replaced by what passes one of
-them on the other side.
+Every segment of the result was tested as it is, from its first point to its last: in a space that
+samples its segments a part of a free segment need not be free.
+
+With ``islands`` the path stays in its homology class: no segment is replaced by one that passes an
+island on the other side.
 """
 
 from hnr_planner.core.kernels.borrowed import borrowed
@@ -17,29 +21,59 @@ from hnr_planner.core.planning.homology import crossings, loop_signature, signat
 from hnr_planner.core.spaces.primitives import segment_is_free
 import numpy as np
 
-#: Looks from one vertex, each halfway to the one before, at most.
-LOOKS_MAX = 64
-#: Halvings of the way on which a vertex slides or its corner is cut.
+#: Largest number of tests from one vertex, each halfway to the one before.
+TESTS_PER_VERTEX_MAX = 64
+#: Halvings of the segment on which a vertex slides or its corner is cut.
 HALVINGS = 12
-#: A corner is cut for a gain of more than this part of its two segments.
+#: Tests of one vertex that slides twice and is cut: the segments along the way, and the results.
+TESTS_OF_A_PULL = 1 + 3 * HALVINGS + 7
+#: Least gain for which a corner is cut, as a fraction of its two segments.
 LEAST_CUT = 1e-3
+
+
+@kernel
+def relax(space, islands, points, to_end, following, i, tests_max):
+    """
+    Extend the shortest paths over vertices, in their order, from the end back to vertex ``i``.
+
+    ``to_end`` (m,) is the length of the shortest path from each vertex to the last one, and
+    ``following`` (m,) the vertex after it on that path; both are known for the vertices behind
+    ``i``. Returns (vertex to go on with, -1 when all are done; tests).
+    """
+    space, islands, points = borrowed(space), borrowed(islands), borrowed(points)
+    tests = 0
+    while i >= 0 and tests < tests_max:
+        lengths = np.empty(len(points) - 1 - i)
+        for k in range(len(lengths)):
+            j = i + 1 + k
+            lengths[k] = norm(points[j] - points[i]) + to_end[j]
+        # The next vertex is known to be visible.
+        to_end[i], following[i] = lengths[0], i + 1
+        for k in np.argsort(lengths, kind='mergesort'):
+            if lengths[k] >= to_end[i] or tests == tests_max:
+                break
+            tests += 1
+            if _may_join(space, islands, points, i, i + 1 + k):
+                to_end[i], following[i] = lengths[k], i + 1 + k
+        i -= 1
+    return i, tests
 
 
 @kernel
 def skip(space, islands, points, kept, n_kept, every, tests_max):
     """
-    Go on from the last vertex kept to the last one that it sees, and so on.
+    Extend the list of kept vertices: each is followed by the last one visible from it.
 
-    A vertex looks at ``every`` one after it, the last one first, or only at the last one, the one
-    halfway there, halfway to that, ...; with too few tests left for all of them it does not begin.
-    Returns (vertices kept, tests).
+    From a vertex ``every`` later one is tested, the last first, or only the last one, the one
+    halfway there, halfway to that, and so on; with too few tests left for all of them it does not
+    begin. Returns (vertices kept, tests).
     """
     space, points = borrowed(space), borrowed(points)
     last, tests = len(points) - 1, 0
     while kept[n_kept - 1] < last:
         at = kept[n_kept - 1]
         ahead = last - at
-        if tests + (ahead if every else LOOKS_MAX) > tests_max:
+        if tests + (ahead if every else TESTS_PER_VERTEX_MAX) > tests_max:
             break
         while ahead > 1:
             tests += 1
@@ -53,7 +87,7 @@ def skip(space, islands, points, kept, n_kept, every, tests_max):
 
 @kernel
 def _may_join(space, islands, points, i, j):
-    """Say whether vertices ``i`` and ``j`` of a path see each other, on its side of islands."""
+    """Return whether vertices ``i`` and ``j`` may be joined, on the path's side of islands."""
     if not segment_is_free(space, points[i], points[j]):
         return False
     after = j + 1
@@ -62,7 +96,7 @@ def _may_join(space, islands, points, i, j):
 
 @kernel
 def join(space, islands, points, rng, n_pairs):
-    """Try to join random pairs of points of the path directly, by three tests each: the path."""
+    """Try to join random pairs of points of the path, by three tests each; return the path."""
     space, islands, rng = borrowed(space), borrowed(islands), borrowed(rng)
     for _ in range(n_pairs):
         points = _join_two(space, islands, points, rng)
@@ -71,18 +105,25 @@ def join(space, islands, points, rng, n_pairs):
 
 @kernel
 def pull(space, islands, points, k, margin, tests_max):
-    """Slide and cut the vertices from ``k`` on: (path, vertex to go on from, tests)."""
+    """Slide and cut the vertices from ``k`` on; return (path, vertex to go on from, tests)."""
     space, islands = borrowed(space), borrowed(islands)
     tests = 0
-    while k < len(points) - 1 and tests + 1 + 3 * HALVINGS <= tests_max:
+    while k < len(points) - 1 and tests + TESTS_OF_A_PULL <= tests_max:
         if _may_join(space, islands, points, k - 1, k + 1):
             points = _replaced(points, k, points[:0])
             tests += 1
             continue
-        _slide(space, islands, points[k - 1], points[k], points[k + 1], margin)
-        _slide(space, islands, points[k + 1], points[k], points[k - 1], margin)
-        corner = _cut(space, islands, points[k - 1], points[k], points[k + 1], margin)
-        tests += 1 + 3 * HALVINGS
+        before, x, after = points[k - 1], points[k], points[k + 1]
+        for ahead in (False, True):
+            kept = x.copy()
+            if ahead:
+                _slide(space, islands, after, x, before, margin)
+            else:
+                _slide(space, islands, before, x, after, margin)
+            if not (segment_is_free(space, before, x) and segment_is_free(space, x, after)):
+                x[:] = kept
+        corner = _cut(space, islands, before, x, after, margin)
+        tests += TESTS_OF_A_PULL
         points = _replaced(points, k, corner)
         k += len(corner)
     return points, k, tests
@@ -90,7 +131,7 @@ def pull(space, islands, points, k, margin, tests_max):
 
 @kernel
 def _slide(space, islands, a, x, b, margin):
-    """Slide ``x`` towards ``a`` to ``margin`` before it would lose sight of ``b``."""
+    """Slide ``x`` towards ``a`` to ``margin`` before the segment to ``b`` is blocked."""
     free, blocked = 0.0, 1.0
     for _ in range(HALVINGS):
         middle = (free + blocked) / 2.0
@@ -106,7 +147,7 @@ def _slide(space, islands, a, x, b, margin):
 
 @kernel
 def _cut(space, islands, a, x, b, margin):
-    """Cut off the corner a-x-b as far as the cut is free: its two ends, ``x`` for little gain."""
+    """Cut off the corner a-x-b as far as is free; return the two ends, ``x`` for little gain."""
     free, blocked = 0.0, 1.0
     for _ in range(HALVINGS):
         middle = (free + blocked) / 2.0
@@ -123,7 +164,12 @@ def _cut(space, islands, a, x, b, margin):
     free = max(free - margin / around, 0.0)
     corner[0], corner[1] = x + free * (a - x), x + free * (b - x)
     gain = free * around - norm(corner[1] - corner[0])
-    if gain > LEAST_CUT * around:
+    if (
+        gain > LEAST_CUT * around
+        and segment_is_free(space, a, corner[0])
+        and segment_is_free(space, corner[0], corner[1])
+        and segment_is_free(space, corner[1], b)
+    ):
         return corner
     corner[0] = x
     return corner[:1]
@@ -131,14 +177,14 @@ def _cut(space, islands, a, x, b, margin):
 
 @kernel
 def _replaced(points, k, others):
-    """Path with vertex ``k`` replaced by ``others`` (n, dim)."""
+    """Return the path with vertex ``k`` replaced by ``others`` (n, dim)."""
     after = k + 1
     return np.concatenate((points[:k], others, points[after:]))
 
 
 @kernel
 def _join_two(space, islands, points, rng):
-    """Try to join two random points of the path, uniform along its length, directly."""
+    """Try to join two random points, uniform along the length of the path; return the path."""
     along = _lengths_along(points)
     s, t = along[-1] * uniform(rng), along[-1] * uniform(rng)
     i, j = _segment_at(along, min(s, t)), _segment_at(along, max(s, t))
@@ -158,7 +204,7 @@ def _join_two(space, islands, points, rng):
 
 @kernel
 def _lengths_along(points):
-    """Length of the path up to each of its vertices (m,)."""
+    """Return the length of the path up to each of its vertices (m,)."""
     along = np.zeros(len(points))
     for k in range(1, len(points)):
         along[k] = along[k - 1] + norm(points[k] - points[k - 1])
@@ -167,7 +213,7 @@ def _lengths_along(points):
 
 @kernel
 def _segment_at(along, s):
-    """Index of the segment that holds the point at length ``s``."""
+    """Return the index of the segment that holds the point at length ``s``."""
     k = 0
     while k < len(along) - 2 and along[k + 1] <= s:
         k += 1
@@ -176,7 +222,7 @@ def _segment_at(along, s):
 
 @kernel
 def _point_on(points, along, k, s):
-    """Point at length ``s`` on segment ``k``."""
+    """Return the point (dim,) at length ``s`` on segment ``k``."""
     length = along[k + 1] - along[k]
     fraction = (s - along[k]) / length if length > 0.0 else 0.0
     return points[k] + fraction * (points[k + 1] - points[k])
@@ -184,7 +230,7 @@ def _point_on(points, along, k, s):
 
 @kernel
 def _joined(points, i, a, b, j):
-    """Path with everything between vertices ``i`` and ``j`` replaced by the segment a-b."""
+    """Return the path with all between vertices ``i`` and ``j`` replaced by the segment a-b."""
     kept = i + 1
     shorter = np.empty((kept + 2 + len(points) - j, points.shape[1]))
     shorter[:kept] = points[:kept]

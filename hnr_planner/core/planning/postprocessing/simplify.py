@@ -1,36 +1,37 @@
 """
-Shorter paths by visibility: any two points of a path that see each other may be joined directly.
+Shorten paths by visibility: any two points of a path with a free segment between may be joined.
 
 Every replacement is a straight line, so a path never gets longer, and in rounds it becomes taut.
 The work is bounded by the number of visibility tests.
 """
 
 import math
-import time
 
 from hnr_planner.core.checks import check_count, check_number, check_points, check_seed, Floats
 from hnr_planner.core.errors import RequestError
+from hnr_planner.core.kernels.clock import working_time
 from hnr_planner.core.kernels.streams import Stream, stream
 from hnr_planner.core.lengths import path_length
 from hnr_planner.core.planning.homology import Islands, NO_ISLANDS
 from hnr_planner.core.planning.limits import Budget
-from hnr_planner.core.planning.postprocessing.shortcuts import join, pull, skip
+from hnr_planner.core.planning.postprocessing.shortcuts import join, pull, relax, skip
 from hnr_planner.core.spaces.space import Space
 import numpy as np
 from numpy.typing import ArrayLike
 
-#: Visibility tests for one path, and how many go by between two looks at the clock.
+#: Largest number of visibility tests for one path, and of those between two checks of the budget.
 TESTS_MAX = 100_000
 TESTS_IN_A_BATCH = 500
-#: Random pairs of points to join for each segment of a path, and between two looks at the clock.
-PAIRS, PAIRS_IN_A_BATCH = 5, 100
-#: Paths with more vertices are first passed over with a few looks from each, again and again while
-#: that leaves less than this part of them.
+#: Random pairs of points to join for each segment of a path, in the plane and in more dimensions,
+#: where the corners of a taut path cannot be found one by one; and pairs between two checks.
+PAIRS, PAIRS_IN_SPACE, PAIRS_IN_A_BATCH = 5, 50, 100
+#: Number of vertices above which a path is first passed over with few tests for each, again and
+#: again while that leaves less than this fraction of them.
 MANY = 256
 WORTHWHILE = 0.8
-#: Rounds end with one that gains less than this part of the length.
+#: Rounds end with one that gains less than this fraction of the length.
 LEAST_GAIN = 1e-3
-#: What gains less than this is the same path, rounded.
+#: Fraction of the length above which a path counts as the same one, rounded.
 SHORTER = 1.0 - 1e-12
 
 
@@ -54,7 +55,7 @@ def simplify(
     seed : int, optional
         Fresh when left out.
     max_iterations : int
-        Visibility tests at most.
+        Largest number of visibility tests.
     time_limit : float, optional
         Seconds after which the path is returned as it is by then.
 
@@ -72,9 +73,8 @@ def simplify(
     path = check_path(space, path)
     max_iterations = check_count('max_iterations', max_iterations, 0)
     seconds = math.inf if time_limit is None else check_number('time_limit', time_limit, 0.0)
-    compile_shorten(space, path)
-    limits = Budget(time.perf_counter() + seconds)
-    return shorten(space, path, stream(check_seed(seed)), limits, max_iterations)
+    budget = Budget(working_time() + seconds)
+    return shorten(space, path, stream(check_seed(seed)), budget, max_iterations)
 
 
 def check_path(space: Space, path: ArrayLike) -> Floats:
@@ -95,27 +95,44 @@ def shorten(
     space: Space,
     path: Floats,
     rng: Stream,
-    limits: Budget,
+    budget: Budget,
     tests_max: int = TESTS_MAX,
     islands: Islands = NO_ISLANDS,
 ) -> Floats:
     """
-    Shorten a free path (m, dim) of the caller's frame within limits; the same ends.
+    Shorten a free path (m, dim) of the caller's frame within the budget; the ends stay.
 
-    It passes each of the ``islands`` on the side where it did before.
+    It passes each of the ``islands`` on the side where it did before. Where the coordinates of the
+    caller's frame round the result into an obstacle, the halves of the path are shortened instead.
     """
-    points = space.to_kernel(path)
-    points, tests = skip_vertices(space, points, limits, tests_max, islands)
+    shorter, tests = _shortened(space, path, rng, budget, tests_max, islands)
+    if path_length(shorter) >= SHORTER * path_length(path):
+        return path
+    if space.is_path_free(shorter):
+        return shorter
+    if len(path) < 4:
+        return path
+    middle, left = len(path) // 2, (tests_max - tests) // 2
+    end = middle + 1
+    halves = [
+        shorten(space, half, rng, budget, left, islands) for half in (path[:end], path[middle:])
+    ]
+    return np.concatenate([halves[0], halves[1][1:]])
+
+
+def _shortened(
+    space: Space, path: Floats, rng: Stream, budget: Budget, tests_max: int, islands: Islands
+) -> tuple[Floats, int]:
+    """Return a shorter path, free in the kernel frame, in the caller's frame; and the tests."""
+    points, tests = skip_vertices(space, space.to_kernel(path), budget, tests_max, islands)
     length, gain = path_length(points), math.inf
-    while len(points) > 2 and gain > LEAST_GAIN * length and limits.stop() is None:
-        points, used = _tighten(space, points, rng, islands, limits, tests_max - tests)
+    while len(points) > 2 and gain > LEAST_GAIN * length and budget.stop() is None:
+        points, used = _tighten(space, points, rng, islands, budget, tests_max - tests)
         tests += used
         gain, length = length - path_length(points), path_length(points)
     shorter = space.from_kernel(points)
     shorter[0], shorter[-1] = path[0], path[-1]
-    if path_length(shorter) < SHORTER * path_length(path) and space.is_path_free(shorter):
-        return shorter
-    return path
+    return shorter, tests
 
 
 def _tighten(
@@ -123,17 +140,18 @@ def _tighten(
     points: Floats,
     rng: Stream,
     islands: Islands,
-    limits: Budget,
+    budget: Budget,
     tests_max: int,
 ) -> tuple[Floats, int]:
-    """Join random points of a path, then pull it taut at each vertex, within limits: likewise."""
-    pairs, tests = min(PAIRS * (len(points) - 1), tests_max // 3), 0
-    while pairs > 0 and limits.stop() is None:
+    """Join random points of a path, then pull it taut at each vertex; return (path, tests)."""
+    pairs_of_a_segment = PAIRS if space.dim <= 2 else PAIRS_IN_SPACE
+    pairs, tests = min(pairs_of_a_segment * (len(points) - 1), tests_max // 3), 0
+    while pairs > 0 and budget.stop() is None:
         batch = min(pairs, PAIRS_IN_A_BATCH)
         points = join(space.data, islands, points, rng, batch)
         pairs, tests = pairs - batch, tests + 3 * batch
     k, used = 1, 1
-    while used > 0 and limits.stop() is None:
+    while used > 0 and budget.stop() is None:
         batch = min(TESTS_IN_A_BATCH, tests_max - tests)
         points, k, used = pull(space.data, islands, points, k, space.margin, batch)
         tests += used
@@ -143,18 +161,44 @@ def _tighten(
 def skip_vertices(
     space: Space,
     points: Floats,
-    limits: Budget,
+    budget: Budget,
     tests_max: int = TESTS_MAX,
     islands: Islands = NO_ISLANDS,
 ) -> tuple[Floats, int]:
-    """Keep only vertices that follow each other as the last one seen: (path, tests)."""
+    """
+    Drop vertices of a path (m, dim) of the kernel frame that are not needed: (path, tests).
+
+    In the plane each vertex is followed by the last one visible from it, and what that leaves is
+    pulled taut easily. In more dimensions it is not, so the shortest path over vertices is taken.
+    """
     tests, before = 0, math.inf
     while MANY < len(points) < WORTHWHILE * before:
         before = len(points)
-        points, used = _pass_over(space, points, False, islands, limits, tests_max - tests)
+        points, used = _pass_over(space, points, False, islands, budget, tests_max - tests)
         tests += used
-    points, used = _pass_over(space, points, True, islands, limits, tests_max - tests)
+    if space.dim > 2 and len(points) <= MANY:
+        points, used = _shortest_over_vertices(space, points, islands, budget, tests_max - tests)
+    else:
+        points, used = _pass_over(space, points, True, islands, budget, tests_max - tests)
     return points, tests + used
+
+
+def _shortest_over_vertices(
+    space: Space, points: Floats, islands: Islands, budget: Budget, tests_max: int
+) -> tuple[Floats, int]:
+    """Return the shortest path over some of the vertices, in their order: (path, tests)."""
+    lengths = np.linalg.norm(np.diff(points, axis=0), axis=1)
+    to_end = np.append(np.cumsum(lengths[::-1])[::-1], 0.0)
+    following = np.arange(1, len(points) + 1)
+    i, tests = len(points) - 2, 0
+    while i >= 0 and tests < tests_max and budget.stop() is None:
+        batch = min(TESTS_IN_A_BATCH, tests_max - tests)
+        i, used = relax(space.data, islands, points, to_end, following, i, batch)
+        tests += used
+    kept = [0]
+    while kept[-1] < len(points) - 1:
+        kept.append(int(following[kept[-1]]))
+    return points[kept], tests
 
 
 def _pass_over(
@@ -162,24 +206,16 @@ def _pass_over(
     points: Floats,
     every: bool,
     islands: Islands,
-    limits: Budget,
+    budget: Budget,
     tests_max: int,
 ) -> tuple[Floats, int]:
-    """Skip along all of a path, within limits: (path, tests)."""
+    """Skip along all of a path: (path, tests)."""
     kept, n_kept, last = np.zeros(len(points), dtype=np.int64), 1, len(points) - 1
     began, tests = 0, 0
-    while began < n_kept and kept[n_kept - 1] < last and limits.stop() is None:
+    while began < n_kept and kept[n_kept - 1] < last and budget.stop() is None:
         began = n_kept
         batch = min(max(TESTS_IN_A_BATCH, len(points)), tests_max - tests)
         n_kept, used = skip(space.data, islands, points, kept, n_kept, every, batch)
         tests += used
     rest = np.arange(kept[n_kept - 1] + 1, len(points))
     return points[np.concatenate([kept[:n_kept], rest])], tests
-
-
-def compile_shorten(space: Space, points: Floats) -> None:
-    """Compile what ``shorten`` runs on this kind of space, without doing anything."""
-    skip(space.data, NO_ISLANDS, points, np.zeros(1, dtype=np.int64), 1, True, 0)
-    join(space.data, NO_ISLANDS, points, stream(0), 0)
-    pull(space.data, NO_ISLANDS, points, 1, space.margin, 0)
-    path_length(points)

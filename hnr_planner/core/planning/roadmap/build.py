@@ -1,33 +1,33 @@
 """
-Learning a space: draws, corners, sights, ways, exits; of what is known already only what changed.
+Build the data of a roadmap: draws, corners, visibility, shortest paths, exits.
 
-Everything follows from uniform draws, one in each of a number of *slots*. A draw that stays where
-it was looks around with the same random numbers as before: what leads to the same place as then
-has met no change, and there is nothing to learn from it.
+Everything follows from uniform draws, one in each of a number of *slots*. After a change of the
+space only what it affects is computed again. A draw that stays where it was casts its rays with
+the same random numbers as before: a ray that ends where it did has met no change.
 """
 
-from hnr_planner.core.cancellation import Event, in_parts
+from hnr_planner.core.cancellation import Event, in_chunks
 from hnr_planner.core.checks import Floats
 from hnr_planner.core.kernels.streams import stream
 from hnr_planner.core.planning.roadmap.corners import (
+    cast_rays,
     distinct,
     find_corners,
-    find_opening,
-    look_around,
+    widen_to_opened,
 )
-from hnr_planner.core.planning.roadmap.data import Knowledge, LOOKS
-from hnr_planner.core.planning.roadmap.draws import place_draws
-from hnr_planner.core.planning.roadmap.exits import arrive, exits_of
+from hnr_planner.core.planning.roadmap.data import N_RAYS, RoadmapData
+from hnr_planner.core.planning.roadmap.draws import draw_slots
+from hnr_planner.core.planning.roadmap.exits import exits_of, mark_exits
 from hnr_planner.core.planning.roadmap.visibility import (
-    ASK,
-    ask_through,
     edges_of,
-    look,
-    mend,
-    no_ways,
-    SEEN,
-    Sights,
-    Ways,
+    empty_paths,
+    mark_unknown_through,
+    repair,
+    resolve,
+    ShortestPaths,
+    UNKNOWN,
+    Visibility,
+    VISIBLE,
 )
 from hnr_planner.core.spaces.primitives import are_free
 from hnr_planner.core.spaces.space import Space
@@ -35,25 +35,26 @@ from hnr_planner.core.trees import NONE
 import numpy as np
 from numpy.typing import NDArray
 
-#: Uniform draws that look around for corners; a part of them also learn their exits, and from a
-#: part of these again paths are asked for.
+#: Uniform draws that cast rays to find corners.
 N_DRAWS = 4096
-GUIDES, SOURCES = 1 / 2, 1 / 16
-#: Nodes at most: their ways fill a table.
+#: Fraction of the draws that guide requests (their exits are known), and fraction from which the
+#: shortest paths to those are computed to find the exits.
+GUIDE_FRACTION, SOURCE_FRACTION = 1 / 2, 1 / 16
+#: Largest number of nodes: their shortest paths fill a table of that size squared.
 NODES_MAX = 3072
-#: How far a node is from the corner that it stands for, in units of the typical clearance.
-AWAY = 1e-3
-#: Times that nodes are taken to the caller's frame and back until they stay the same.
+#: Distance of a node from the corner of an obstacle, in units of the typical clearance.
+OFFSET = 1e-3
+#: Conversions of nodes to the caller's frame and back, after which most stay the same.
 ROUNDS = 8
-#: What random streams are for, beside those of the draws: the looks.
-LOOK = 2
+#: Purpose of random streams, beside those of the draws: to cast rays.
+RAYS = 2
 
 
-def learn(
-    before: Knowledge, space: Space, n_draws: int, seed: int, cancel: Event | None
-) -> Knowledge:
+def build_data(
+    before: RoadmapData, space: Space, n_draws: int, seed: int, cancel: Event | None
+) -> RoadmapData:
     """
-    Return what is known of ``space`` from ``n_draws`` draws, given what was known before.
+    Return the data of ``space`` from ``n_draws`` draws, given the data before a change.
 
     Raises
     ------
@@ -62,165 +63,177 @@ def learn(
 
     """
     lower, upper = space.kernel_bounds
-    draws, stays = place_draws(before, space, n_draws, seed, cancel)
-    looks, corners, opening = _look_for_corners(before, space, draws, stays, seed, cancel)
+    draws, stays = draw_slots(before, space, n_draws, seed, cancel)
+    rays, corners, opened_box = _cast_and_find_corners(before, space, draws, stays, seed, cancel)
     nodes, was = _choose_nodes(before, space, corners)
 
-    sights = np.tril(_sights_before(before, space, before.sights, was, was), -1)
-    _ask(space, nodes, nodes, sights, opening, cancel)
-    sights |= sights.T
-    guides = draws[: int(GUIDES * n_draws)]
+    visibility = np.tril(_known_visibility(before, space, before.visibility, was, was), -1)
+    _resolve(space, nodes, nodes, visibility, opened_box, cancel)
+    visibility |= visibility.T
+    guides = draws[: int(GUIDE_FRACTION * n_draws)]
     slots = np.arange(len(guides))
-    guide_stays = stays[: len(guides)] & (slots < len(before.guide_sights))
+    guide_stays = stays[: len(guides)] & (slots < len(before.guide_visibility))
     guide_was = np.where(guide_stays, slots, NONE)
-    guide_sights = _sights_before(before, space, before.guide_sights, guide_was, was)
-    _ask(space, guides, nodes, guide_sights, opening, cancel)
+    guide_visibility = _known_visibility(before, space, before.guide_visibility, guide_was, was)
+    _resolve(space, guides, nodes, guide_visibility, opened_box, cancel)
 
-    ways = _mend_ways(before, nodes, was, sights, cancel)
-    is_exit = _find_exits(space, guides, nodes, guide_sights, int(SOURCES * n_draws), ways, cancel)
+    paths = _repair_paths(before, nodes, was, visibility, cancel)
+    n_sources = int(SOURCE_FRACTION * n_draws)
+    is_exit = _find_exits(space, guides, nodes, guide_visibility, n_sources, paths, cancel)
     exits = exits_of(guides, is_exit, lower, upper)
-    return Knowledge(
-        space, n_draws, before.age + 1, draws, looks, nodes, sights, guide_sights, ways, exits
+    return RoadmapData(
+        space,
+        n_draws,
+        before.age + 1,
+        draws,
+        rays,
+        nodes,
+        visibility,
+        guide_visibility,
+        paths,
+        exits,
     )
 
 
 # -- corners ------------------------------------------------------------------------------------
 
 
-def _look_for_corners(
-    before: Knowledge,
+def _cast_and_find_corners(
+    before: RoadmapData,
     space: Space,
     draws: Floats,
     stays: NDArray[np.bool_],
     seed: int,
     cancel: Event | None,
 ) -> tuple[Floats, Floats, tuple[Floats, Floats]]:
-    """Return looks, new corners (n, dim), and lower and upper corner of what was opened."""
-    looks, known = np.full((2, len(draws), LOOKS, space.dim), np.nan)
-    known[stays] = before.looks[: len(draws)][stays[: len(before.looks)]]
-    opening = np.full(space.dim, np.inf), np.full(space.dim, -np.inf)
-    away = AWAY * space.typical_clearance
+    """Return rays, new corners (n, dim), and a box (lower, upper) around what was opened."""
+    rays, known = np.full((2, len(draws), N_RAYS, space.dim), np.nan)
+    known[stays] = before.rays[: len(draws)][stays[: len(before.rays)]]
+    opened_box = np.full(space.dim, np.inf), np.full(space.dim, -np.inf)
+    offset = OFFSET * space.typical_clearance
     found = [np.empty((0, space.dim))]
-    for part in in_parts(len(draws), cancel):
-        look_around(space.data, draws[part], stream(seed, LOOK, part.start), looks[part])
-        found.append(find_corners(space.data, draws[part], looks[part], known[part], away))
+    for chunk in in_chunks(len(draws), cancel):
+        cast_rays(space.data, draws[chunk], stream(seed, RAYS, chunk.start), rays[chunk])
+        found.append(find_corners(space.data, draws[chunk], rays[chunk], known[chunk], offset))
         if before.age > 0 and space is not before.space:
-            find_opening(before.space.data, draws[part], looks[part], known[part], *opening)
-    return looks, np.concatenate(found), opening
+            widen_to_opened(
+                before.space.data, draws[chunk], rays[chunk], known[chunk], *opened_box
+            )
+    return rays, np.concatenate(found), opened_box
 
 
 def _choose_nodes(
-    before: Knowledge, space: Space, corners: Floats
+    before: RoadmapData, space: Space, corners: Floats
 ) -> tuple[Floats, NDArray[np.int64]]:
     """
     Return the nodes (n, dim) among old nodes and corners, and which each was before, or NONE.
 
     Corners that are found often are found early, and so are not among those for which there is no
-    room. Old nodes that no way goes over come last.
+    room. Old nodes that no shortest path uses come last.
     """
     old = np.flatnonzero(are_free(space.data, before.nodes))
-    new = _settled(space, corners)
+    new = _stable(space, corners)
     points, n_old = np.concatenate([before.nodes[old], new]), len(old)
-    stands = distinct(points, n_old, AWAY * space.typical_clearance / 2.0)[n_old:]
+    is_kept = distinct(points, n_old, OFFSET * space.typical_clearance / 2.0)[n_old:]
     is_used = np.zeros(len(before.nodes), dtype=bool)
-    is_used[before.ways.previous[before.ways.previous != NONE]] = True
+    is_used[before.shortest_paths.previous[before.shortest_paths.previous != NONE]] = True
     is_used[before.exits.nodes] = True
     was = np.concatenate(
-        [old[is_used[old]], np.full(np.count_nonzero(stands), NONE), old[~is_used[old]]]
+        [old[is_used[old]], np.full(np.count_nonzero(is_kept), NONE), old[~is_used[old]]]
     )[:NODES_MAX]
     nodes = np.empty((len(was), space.dim))
     nodes[was != NONE] = before.nodes[was[was != NONE]]
-    nodes[was == NONE] = new[stands][: np.count_nonzero(was == NONE)]
+    nodes[was == NONE] = new[is_kept][: np.count_nonzero(was == NONE)]
     return nodes, was
 
 
-def _settled(space: Space, points: Floats) -> Floats:
+def _stable(space: Space, points: Floats) -> Floats:
     """
-    Return those of ``points`` that are free and the same after a way through the caller's frame.
+    Return those of ``points`` that are free and equal after conversion to the caller's frame.
 
     A path over such nodes is checked in the caller's frame with the very numbers that it was
     found with.
     """
     for _ in range(ROUNDS):
         before, points = points, space.to_kernel(space.from_kernel(points))
-    settled = points[(points == before).all(axis=1)]
-    return settled[are_free(space.data, settled)]
+    stable = points[(points == before).all(axis=1)]
+    return stable[are_free(space.data, stable)]
 
 
-# -- sights, ways and exits -----------------------------------------------------------------------
+# -- visibility, shortest paths and exits --------------------------------------------------------
 
 
-def _sights_before(
-    before: Knowledge,
+def _known_visibility(
+    before: RoadmapData,
     space: Space,
-    sights: Sights,
+    visibility: Visibility,
     rows: NDArray[np.int64],
     columns: NDArray[np.int64],
-) -> Sights:
-    """Return what old sights say for new rows and columns; NONE where those are really new."""
-    known = np.full((len(rows), len(columns)), ASK, dtype=np.uint8)
+) -> Visibility:
+    """Return the visibility known before for new rows and columns; UNKNOWN where there is none."""
+    known = np.full((len(rows), len(columns)), UNKNOWN, dtype=np.uint8)
     old_rows, old_columns = np.flatnonzero(rows != NONE), np.flatnonzero(columns != NONE)
-    known[np.ix_(old_rows, old_columns)] = sights[np.ix_(rows[old_rows], columns[old_columns])]
+    known[np.ix_(old_rows, old_columns)] = visibility[np.ix_(rows[old_rows], columns[old_columns])]
     if space is not before.space:
-        known[known == SEEN] = ASK
+        known[known == VISIBLE] = UNKNOWN
     return known
 
 
-def _ask(
+def _resolve(
     space: Space,
     points: Floats,
     others: Floats,
-    sights: Sights,
-    opening: tuple[Floats, Floats],
+    visibility: Visibility,
+    opened_box: tuple[Floats, Floats],
     cancel: Event | None,
 ) -> None:
-    """Answer what ``sights`` (k, n) ask, and what an opening may have changed."""
-    for part in in_parts(len(points), cancel):
-        if (opening[0] <= opening[1]).all():
-            ask_through(*opening, points[part], others, sights[part])
-        look(space.data, points[part], others, sights[part])
+    """Compute the unknown ``visibility`` (k, n), and what the opened box may have changed."""
+    for chunk in in_chunks(len(points), cancel):
+        if (opened_box[0] <= opened_box[1]).all():
+            mark_unknown_through(*opened_box, points[chunk], others, visibility[chunk])
+        resolve(space.data, points[chunk], others, visibility[chunk])
 
 
-def _mend_ways(
-    before: Knowledge,
+def _repair_paths(
+    before: RoadmapData,
     nodes: Floats,
     was: NDArray[np.int64],
-    sights: Sights,
+    visibility: Visibility,
     cancel: Event | None,
-) -> Ways:
-    """Return the shortest ways along the sights of nodes: the old ones, mended."""
-    ways = no_ways(len(nodes))
+) -> ShortestPaths:
+    """Return the shortest paths between nodes: those known before, repaired."""
+    paths = empty_paths(len(nodes))
     old = np.flatnonzero(was != NONE)
     if len(old) > 0:
         number = np.full(len(before.nodes) + 1, NONE, dtype=np.int16)  # the last one is for NONE
         number[was[old]] = old
         pairs, pairs_before = np.ix_(old, old), np.ix_(was[old], was[old])
-        ways.distance[pairs] = before.ways.distance[pairs_before]
-        ways.previous[pairs] = number[before.ways.previous[pairs_before]]
-        is_new = (sights[pairs] == SEEN) & (before.sights[pairs_before] != SEEN)
+        paths.distance[pairs] = before.shortest_paths.distance[pairs_before]
+        paths.previous[pairs] = number[before.shortest_paths.previous[pairs_before]]
+        is_new = (visibility[pairs] == VISIBLE) & (before.visibility[pairs_before] != VISIBLE)
         new = old[np.argwhere(is_new)]
     else:
         new = np.empty((0, 2), dtype=np.int64)
     new_length = np.linalg.norm(np.diff(nodes[new], axis=1)[:, 0], axis=1).astype(np.float32)
-    edges = edges_of(nodes, nodes, sights)
-    for part in in_parts(len(nodes), cancel):
-        mend(ways, np.arange(part.start, part.stop), edges, sights, new, new_length)
-    return ways
+    edges = edges_of(nodes, nodes, visibility)
+    for chunk in in_chunks(len(nodes), cancel):
+        repair(paths, np.arange(chunk.start, chunk.stop), edges, visibility, new, new_length)
+    return paths
 
 
 def _find_exits(
     space: Space,
     guides: Floats,
     nodes: Floats,
-    guide_sights: Sights,
+    guide_visibility: Visibility,
     n_sources: int,
-    ways: Ways,
+    paths: ShortestPaths,
     cancel: Event | None,
 ) -> NDArray[np.bool_]:
-    """Say through which nodes (g, n) the guides are reached from the first of them."""
-    is_exit = np.zeros(guide_sights.shape, dtype=bool)
-    edges = edges_of(guides, nodes, guide_sights)
-    for part in in_parts(min(n_sources, len(guides)), cancel):
-        sources = np.arange(part.start, part.stop)
-        arrive(space.data, guides, edges, sources, ways.distance, is_exit)
+    """Return through which nodes (g, n) shortest paths from the first guides reach each guide."""
+    is_exit = np.zeros(guide_visibility.shape, dtype=bool)
+    edges = edges_of(guides, nodes, guide_visibility)
+    for chunk in in_chunks(min(n_sources, len(guides)), cancel):
+        sources = np.arange(chunk.start, chunk.stop)
+        mark_exits(space.data, guides, edges, sources, paths.distance, is_exit)
     return is_exit

@@ -1,21 +1,21 @@
-"""What a roadmap knows of its space."""
+"""Data of a roadmap."""
 
 from dataclasses import dataclass
 
 from hnr_planner.core.checks import Floats
 from hnr_planner.core.planning.roadmap.exits import Exits, exits_of
-from hnr_planner.core.planning.roadmap.visibility import no_ways, Sights, Ways
+from hnr_planner.core.planning.roadmap.visibility import empty_paths, ShortestPaths, Visibility
 from hnr_planner.core.spaces.space import Space
 import numpy as np
 
-#: Looks around from each draw.
-LOOKS = 32
+#: Rays from each draw: Hit-and-Run steps.
+N_RAYS = 32
 
 
 @dataclass(frozen=True, eq=False)
-class Knowledge:
+class RoadmapData:
     """
-    What is known of a space, kernel frame.
+    All that a roadmap has computed of its space, kernel frame.
 
     Attributes
     ----------
@@ -23,17 +23,17 @@ class Knowledge:
     n_draws : int
         Slots; a space without free points fills none.
     age : int
-        How often it was mended.
+        Number of times that it was built or repaired.
     draws : (k, dim)
         Uniform draws, one for each slot.
-    looks : (k, LOOKS, dim)
-        Where Hit-and-Run steps from each led.
+    rays : (k, N_RAYS, dim)
+        Ends of Hit-and-Run steps from each draw.
     nodes : (n, dim)
-        Corners.
-    sights : (n, n), guide_sights (g, n)
-        Which nodes the nodes see, and the first g draws.
-    ways : Ways
-        Shortest ways between the nodes.
+        Corners of the space, a little off the obstacles.
+    visibility : (n, n), guide_visibility (g, n)
+        Which nodes are visible from the nodes, and from the first g draws.
+    shortest_paths : ShortestPaths
+        Between the nodes.
     exits : Exits
         Where shortest paths leave the first g draws.
 
@@ -43,17 +43,17 @@ class Knowledge:
     n_draws: int
     age: int
     draws: Floats
-    looks: Floats
+    rays: Floats
     nodes: Floats
-    sights: Sights
-    guide_sights: Sights
-    ways: Ways
+    visibility: Visibility
+    guide_visibility: Visibility
+    shortest_paths: ShortestPaths
     exits: Exits
 
 
-def nothing_known(space: Space) -> Knowledge:
-    """Return what is known of a space before a first draw."""
-    none, no_sights = np.empty((0, space.dim)), np.empty((0, 0), dtype=np.uint8)
-    exits = exits_of(none, no_sights.astype(bool), *space.kernel_bounds)
-    looks = np.empty((0, LOOKS, space.dim))
-    return Knowledge(space, 0, 0, none, looks, none, no_sights, no_sights, no_ways(0), exits)
+def empty_roadmap(space: Space) -> RoadmapData:
+    """Return the data of a space before a first draw."""
+    none, no_pairs = np.empty((0, space.dim)), np.empty((0, 0), dtype=np.uint8)
+    exits = exits_of(none, no_pairs.astype(bool), *space.kernel_bounds)
+    rays = np.empty((0, N_RAYS, space.dim))
+    return RoadmapData(space, 0, 0, none, rays, none, no_pairs, no_pairs, empty_paths(0), exits)

@@ -1,12 +1,12 @@
-"""Uniform draws of a space, by Hit-and-Run steps; after a change of the space they are mended."""
+"""Draw uniform points of a space by Hit-and-Run steps; renew them after a change of the space."""
 
-from hnr_planner.core.cancellation import Event, in_parts
+from hnr_planner.core.cancellation import Event, in_chunks
 from hnr_planner.core.checks import Floats
 from hnr_planner.core.kernels.borrowed import borrowed
 from hnr_planner.core.kernels.kernel import kernel
 from hnr_planner.core.kernels.streams import stream
 from hnr_planner.core.planning.planners.rrt import draw_in_box
-from hnr_planner.core.planning.roadmap.data import Knowledge
+from hnr_planner.core.planning.roadmap.data import RoadmapData
 from hnr_planner.core.sampling.draws import hit_and_run_step
 from hnr_planner.core.spaces.primitives import are_free, contains
 from hnr_planner.core.spaces.space import Space
@@ -15,15 +15,15 @@ from numpy.typing import NDArray
 
 #: Proposals for a point to walk from, and Hit-and-Run steps from there to a draw.
 PROPOSALS, STEPS = 64, 8
-#: What random streams are for: points to walk from, the walks.
-ROOTS, PLACE = 0, 1
+#: Purposes of random streams: points to walk from, the walks.
+ROOTS, WALK = 0, 1
 
 
-def place_draws(
-    before: Knowledge, space: Space, n_draws: int, seed: int, cancel: Event | None
+def draw_slots(
+    before: RoadmapData, space: Space, n_draws: int, seed: int, cancel: Event | None
 ) -> tuple[Floats, NDArray[np.bool_]]:
     """
-    Return a uniform draw for each slot (k, dim), and which of them stay where they were (k,).
+    Return a uniform draw for each slot (k, dim), and which of them are those from before (k,).
 
     Each slot draws afresh. The old draw stays, unless it is not free any more or the new one is
     where nothing was free: so draws that were uniform on the old space are so on the new one.
@@ -37,8 +37,8 @@ def place_draws(
         np.resize(roots[:n_roots], (n_filled, space.dim)),
         np.zeros(n_filled, dtype=bool),
     )
-    for part in in_parts(n_filled, cancel):
-        _walk(space.data, stream(seed, PLACE, before.age, part.start), STEPS, draws[part])
+    for chunk in in_chunks(n_filled, cancel):
+        _walk(space.data, stream(seed, WALK, before.age, chunk.start), STEPS, draws[chunk])
     old = before.draws[:n_filled]
     stays[: len(old)] = space is before.space or (
         are_free(space.data, old) & are_free(before.space.data, draws[: len(old)])
@@ -49,7 +49,7 @@ def place_draws(
 
 @kernel
 def _free_points(space, lower, upper, rng, proposals, points):
-    """Fill the rows of ``points`` (k, dim), with so many proposals for each; return how many."""
+    """Fill ``points`` (k, dim) with free points, by ``proposals`` for each; return the number."""
     n = 0
     for _ in range(proposals * len(points)):
         if n == len(points):
@@ -62,7 +62,7 @@ def _free_points(space, lower, upper, rng, proposals, points):
 
 @kernel
 def _walk(space, rng, steps, points):
-    """Move each of ``points`` (k, dim) by Hit-and-Run steps."""
+    """Move each of ``points`` (k, dim) by so many Hit-and-Run steps."""
     space, rng, points = borrowed(space), borrowed(rng), borrowed(points)
     y = np.empty(points.shape[1])
     for k in range(len(points)):

@@ -1,10 +1,10 @@
 """
-A roadmap: what is known of short paths on a map, for many requests.
+Roadmaps: the shortest paths between the corners of a map, for many requests.
 
-Short paths bend at the corners of obstacles, so these are the nodes, and a table holds all
-shortest ways between them. What is left for a request is to get there and away: start and goal
-leave by the *exits* of the Hit-and-Run draws around them, and of all pairs of exits that they see
-the one is taken that makes the whole path shortest.
+Short paths bend at the corners of obstacles, so these are the nodes, and a table holds the
+shortest paths between all of them. A request is left to connect its ends: start and goal try the
+*exits* of the Hit-and-Run draws around them, and of all pairs of visible exits the one is taken
+that makes the whole path shortest.
 """
 
 from dataclasses import dataclass
@@ -16,12 +16,12 @@ from hnr_planner.core.checks import check_seed, Floats
 from hnr_planner.core.errors import RequestError
 from hnr_planner.core.kernels.borrowed import borrowed
 from hnr_planner.core.kernels.kernel import kernel
-from hnr_planner.core.kernels.streams import Stream, stream
-from hnr_planner.core.planning.planner import compile_search, make_problem, PathSearch, Problem
-from hnr_planner.core.planning.planners.hit_and_run_connect import HitAndRunConnect
-from hnr_planner.core.planning.roadmap.build import learn, N_DRAWS
-from hnr_planner.core.planning.roadmap.data import Knowledge, nothing_known
-from hnr_planner.core.planning.roadmap.exits import nodes_seen, way_to_node
+from hnr_planner.core.kernels.streams import Stream
+from hnr_planner.core.planning.planner import PathSearch, Problem
+from hnr_planner.core.planning.planners.auto import Auto
+from hnr_planner.core.planning.roadmap.build import build_data, N_DRAWS
+from hnr_planner.core.planning.roadmap.data import empty_roadmap, RoadmapData
+from hnr_planner.core.planning.roadmap.exits import visible_nodes, walk_to_node
 from hnr_planner.core.spaces.primitives import segment_is_free
 from hnr_planner.core.spaces.space import Space
 from hnr_planner.core.trees import branch, NONE
@@ -32,10 +32,11 @@ from numpy.typing import NDArray
 @dataclass(frozen=True, eq=False, repr=False)
 class Roadmap:
     """
-    A planner that knows its space: ``Roadmap.build``.
+    A planner that has explored its space beforehand: ``Roadmap.build``.
 
-    It never changes: ``update`` and ``grow`` return new ones. An answer is a pure function of the
-    roadmap, the request and its seed, which matters only where start or goal sees no node.
+    It never changes: ``update`` and ``grow`` return new ones. A result is a pure function of the
+    roadmap, the request and its seed; the seed matters only where no node is visible from start
+    or goal.
 
     Attributes
     ----------
@@ -45,7 +46,7 @@ class Roadmap:
     """
 
     seed: int
-    _known: Knowledge
+    _data: RoadmapData
 
     name: ClassVar[str] = 'roadmap'
 
@@ -54,12 +55,14 @@ class Roadmap:
         cls, space: Space, *, seed: int | None = None, cancel: Event | None = None
     ) -> 'Roadmap':
         """
-        Learn a space. It takes seconds: bounded by counts, it does not grow with the map's size.
+        Build the roadmap of a space.
+
+        It takes seconds: work is bounded by counts, and does not grow with the map's size.
 
         Parameters
         ----------
         space : Space
-            Any space of the plane, in one part or more, even without free points.
+            Any space of the plane, of one component or more, even without free points.
         seed : int, optional
             Equal seeds give equal roadmaps. Fresh when left out.
         cancel : threading.Event, optional
@@ -75,12 +78,11 @@ class Roadmap:
         """
         _check_plane(space)
         seed = check_seed(seed)
-        _compile(space)
-        return cls(seed, learn(nothing_known(space), space, N_DRAWS, seed, cancel))
+        return cls(seed, build_data(empty_roadmap(space), space, N_DRAWS, seed, cancel))
 
     def update(self, space: Space, *, cancel: Event | None = None) -> 'Roadmap':
         """
-        Return a roadmap of ``space``: this one, mended where the spaces differ.
+        Return a roadmap of ``space``: this one, repaired where the spaces differ.
 
         Raises
         ------
@@ -90,8 +92,8 @@ class Roadmap:
         """
         if not _same_frame(self.space, space):
             return Roadmap.build(space, seed=self.seed, cancel=cancel)
-        known = learn(self._known, space, self._known.n_draws, self.seed, cancel)
-        return Roadmap(self.seed, known)
+        data = build_data(self._data, space, self._data.n_draws, self.seed, cancel)
+        return Roadmap(self.seed, data)
 
     def grow(self, *, cancel: Event | None = None) -> 'Roadmap':
         """
@@ -103,22 +105,22 @@ class Roadmap:
             When ``cancel`` was set.
 
         """
-        known = learn(self._known, self.space, 2 * self._known.n_draws, self.seed, cancel)
-        return Roadmap(self.seed, known)
+        data = build_data(self._data, self.space, 2 * self._data.n_draws, self.seed, cancel)
+        return Roadmap(self.seed, data)
 
     @property
     def space(self) -> Space:
         """The space that it was built for; requests have to be for the same one."""
-        return self._known.space
+        return self._data.space
 
     @property
     def nodes(self) -> Floats:
         """Nodes (n, dim): corners of the space, in the caller's frame."""
-        return self.space.from_kernel(self._known.nodes)
+        return self.space.from_kernel(self._data.nodes)
 
     def start(self, problem: Problem, rng: Stream) -> PathSearch:
         """
-        Answer a request, or start trees where the roadmap does not lead from start to goal.
+        Return a solved search, or start trees where the roadmap does not connect start and goal.
 
         Raises
         ------
@@ -128,26 +130,26 @@ class Roadmap:
         """
         if problem.space is not self.space.data:
             raise RequestError('the roadmap is of another space: call its update(space) first')
-        nodes, ways, exits = self._known.nodes, self._known.ways, self._known.exits
+        nodes, paths, exits = self._data.nodes, self._data.shortest_paths, self._data.exits
         space, ends = problem.space, (problem.start[np.newaxis], problem.goal[np.newaxis])
-        path, taut = shortest_path(space, nodes, ways, exits, *ends), True
+        path, taut = shortest_path(space, nodes, paths, exits, *ends), True
         if len(path) == 0:
-            ahead, back = (way_to_node(space, nodes, exits, end[0], rng) for end in ends)
-            path = shortest_path(space, nodes, ways, exits, ahead, back)
+            ahead, back = (walk_to_node(space, nodes, exits, end[0], rng) for end in ends)
+            path = shortest_path(space, nodes, paths, exits, ahead, back)
             taut = False
-        return Answer(path, taut) if len(path) else HitAndRunConnect().start(problem, rng)
+        return SolvedSearch(path, taut) if len(path) else Auto().start(problem, rng)
 
 
 @dataclass
-class Answer:
+class SolvedSearch:
     """
-    A search that has found its path without a transition.
+    A search that was solved without a transition.
 
     Attributes
     ----------
     path : (m, dim)
     taut : bool
-        Whether there is nothing to gain from pulling it.
+        Whether pulling it taut gains nothing.
 
     """
 
@@ -168,15 +170,15 @@ class Answer:
 
     @property
     def counts(self) -> dict[str, int]:
-        """Nothing was counted."""
+        """No further counts."""
         return {}
 
     def advance(self, n_iterations: int) -> None:
-        """Do nothing: there is nothing left to do."""
+        """Do nothing: the search is solved."""
 
 
 def _check_plane(space: Space) -> None:
-    """Refuse spaces in which shortest paths bend anywhere along edges, not at a few corners."""
+    """Raise RequestError where shortest paths bend anywhere along edges, not at few corners."""
     if space.dim != 2:
         raise RequestError(
             f'a roadmap is of the corners of a plane: space must have dimension 2, this '
@@ -184,19 +186,8 @@ def _check_plane(space: Space) -> None:
         )
 
 
-def _compile(space: Space) -> None:
-    """Compile what requests on this kind of space may run, before one of them waits for it."""
-    (lower, upper), rng = space.kernel_bounds, stream(0)
-    nothing = nothing_known(space)
-    for_nodes = nothing.nodes, nothing.ways, nothing.exits
-    shortest_path(space.data, *for_nodes, lower[np.newaxis], upper[np.newaxis])
-    way_to_node(space.data, nothing.nodes, nothing.exits, lower, rng)
-    start, goal = space.bounds
-    compile_search(HitAndRunConnect(), make_problem(space, start, goal, goal_radius=0.0))
-
-
 def _same_frame(a: Space, b: Space) -> bool:
-    """Say whether points have the same numbers in the kernel frames of both spaces."""
+    """Return whether points have the same numbers in the kernel frames of both spaces."""
     if type(a.data) is not type(b.data) or not np.array_equal(a.kernel_bounds, b.kernel_bounds):
         return False
     bounds = np.stack([*a.bounds, *b.bounds])
@@ -204,26 +195,26 @@ def _same_frame(a: Space, b: Space) -> bool:
 
 
 @kernel
-def shortest_path(space, nodes, ways, exits, ahead, back):
+def shortest_path(space, nodes, paths, exits, ahead, back):
     """
-    Return the shortest path (m, dim) over nodes between two ways; (0, dim) where none is known.
+    Return the shortest path (m, dim) over nodes that joins two walks; (0, dim) if there is none.
 
-    The ways (k, dim) lead from start and from goal to points that see a node.
+    The walks (k, dim) lead from start and from goal to points from which a node is visible.
     """
-    space, nodes, ways, exits = borrowed(space), borrowed(nodes), borrowed(ways), borrowed(exits)
-    leaving, before = nodes_seen(space, nodes, exits, ahead[-1], True)
-    arriving, after = nodes_seen(space, nodes, exits, back[-1], False)
+    space, nodes, paths, exits = borrowed(space), borrowed(nodes), borrowed(paths), borrowed(exits)
+    leaving, before = visible_nodes(space, nodes, exits, ahead[-1], True)
+    arriving, after = visible_nodes(space, nodes, exits, back[-1], False)
     shortest, first, last = math.inf, NONE, NONE
     for i in range(len(leaving)):
         for j in range(len(arriving)):
-            length = before[i] + ways.distance[leaving[i], arriving[j]] + after[j]
+            length = before[i] + paths.distance[leaving[i], arriving[j]] + after[j]
             if length < shortest:
                 shortest, first, last = length, leaving[i], arriving[j]
     if first == NONE:
         return np.empty((0, nodes.shape[1]))
-    # What the exits of the draws around do not tell: the way may be joined further on.
-    while first != last and segment_is_free(space, ahead[-1], nodes[ways.previous[last, first]]):
-        first = ways.previous[last, first]
-    while first != last and segment_is_free(space, nodes[ways.previous[first, last]], back[-1]):
-        last = ways.previous[first, last]
-    return np.concatenate((ahead, branch(nodes, ways.previous[first], last), back[::-1]))
+    # The exits of draws nearby are a guess: the path may be joined further on.
+    while first != last and segment_is_free(space, ahead[-1], nodes[paths.previous[last, first]]):
+        first = paths.previous[last, first]
+    while first != last and segment_is_free(space, nodes[paths.previous[first, last]], back[-1]):
+        last = paths.previous[first, last]
+    return np.concatenate((ahead, branch(nodes, paths.previous[first], last), back[::-1]))

@@ -1,9 +1,9 @@
 """
-Which points see each other, and the shortest ways along what they see.
+Visibility between points, and the shortest paths along it.
 
-Everything is mended rather than made: a pair is looked at only when it has to be, and of a table
-of shortest ways only what lost an edge or has a new one is searched again. To make it is to mend
-one in which nothing is known.
+Both are repaired after a change rather than computed anew: a pair of points is tested only where
+its visibility is unknown, and of a table of shortest paths only what lost an edge or gained one is
+searched again. To build a table is to repair an empty one.
 """
 
 import heapq
@@ -18,41 +18,42 @@ from hnr_planner.core.trees import NONE
 import numpy as np
 from numpy.typing import NDArray
 
-#: What is known of a pair of points: it does not see each other, it does, or it has to be asked.
-HIDDEN, SEEN, ASK = 0, 1, 2
+#: Visibility of a pair of points: blocked, free, or still to be tested.
+HIDDEN, VISIBLE, UNKNOWN = 0, 1, 2
 
-Sights = NDArray[np.uint8]
+Visibility = NDArray[np.uint8]
 
 
 @kernel
-def look(space, points, others, sights):
+def resolve(space, points, others, visibility):
     """
-    Answer for all pairs of ``points`` (k, dim) and ``others`` (m, dim) that ask, in ``sights``.
+    Test the pairs of ``points`` (k, dim) and ``others`` (m, dim) whose visibility is unknown.
 
-    A sight has to be free from either end, so that a way may be walked both ways.
+    ``visibility`` (k, m) is updated. A segment has to be free from either end, so that a path
+    over it holds in both directions.
     """
     space, points, others = borrowed(space), borrowed(points), borrowed(others)
     for i in range(len(points)):
         for j in range(len(others)):
-            if sights[i, j] == ASK:
-                seen = segment_is_free(space, points[i], others[j]) and segment_is_free(
+            if visibility[i, j] == UNKNOWN:
+                visible = segment_is_free(space, points[i], others[j]) and segment_is_free(
                     space, others[j], points[i]
                 )
-                sights[i, j] = SEEN if seen else HIDDEN
+                visibility[i, j] = VISIBLE if visible else HIDDEN
 
 
 @kernel
-def ask_through(lower, upper, points, others, sights):
-    """Let every hidden pair ask whose segment comes through the box from lower to upper."""
+def mark_unknown_through(lower, upper, points, others, visibility):
+    """Make every hidden pair unknown whose segment meets the box from ``lower`` to ``upper``."""
     for i in range(len(points)):
         for j in range(len(others)):
-            if sights[i, j] == HIDDEN and _crosses(points[i], others[j], lower, upper):
-                sights[i, j] = ASK
+            if visibility[i, j] == HIDDEN and _crosses(points[i], others[j], lower, upper):
+                visibility[i, j] = UNKNOWN
 
 
 @kernel
 def _crosses(a, b, lower, upper):
-    """Say whether the segment a-b meets a box: the parts of it inside all slabs overlap."""
+    """Return whether the segment a-b meets a box: its intervals inside the slabs overlap."""
     first, last = 0.0, 1.0
     for i in range(len(a)):
         d = b[i] - a[i]
@@ -67,7 +68,7 @@ def _crosses(a, b, lower, upper):
 
 class Edges(NamedTuple):
     """
-    What points see, point by point.
+    Edges from points to those that are visible from them.
 
     Attributes
     ----------
@@ -76,7 +77,7 @@ class Edges(NamedTuple):
     to : (edges,) int64
         The point that each leads to.
     length : (edges,) float32
-        How far away that is.
+        Length of the edge.
 
     """
 
@@ -85,9 +86,9 @@ class Edges(NamedTuple):
     length: NDArray[np.float32]
 
 
-def edges_of(points: Floats, others: Floats, sights: Sights) -> Edges:
-    """Return the edges from ``points`` (k, dim) to those of ``others`` (m, dim) that they see."""
-    start, end = np.nonzero(sights == SEEN)
+def edges_of(points: Floats, others: Floats, visibility: Visibility) -> Edges:
+    """Return the edges from ``points`` (k, dim) to the visible ones of ``others`` (m, dim)."""
+    start, end = np.nonzero(visibility == VISIBLE)
     return Edges(
         first=np.searchsorted(start, np.arange(len(points) + 1)),
         to=end,
@@ -95,16 +96,16 @@ def edges_of(points: Floats, others: Floats, sights: Sights) -> Edges:
     )
 
 
-class Ways(NamedTuple):
+class ShortestPaths(NamedTuple):
     """
-    The shortest ways between all nodes of a graph.
+    Shortest paths between all nodes of a graph.
 
     Attributes
     ----------
     distance : (n, n) float32
-        Length of the way from the first to the second; inf where there is none.
+        Length of the path from the first node to the second; inf where there is none.
     previous : (n, n) int16
-        The node before the second on that way; NONE where there is none, and at the first itself.
+        Node before the second on that path; NONE where there is none, and at the first itself.
 
     """
 
@@ -112,38 +113,38 @@ class Ways(NamedTuple):
     previous: NDArray[np.int16]
 
 
-def no_ways(n_nodes: int) -> Ways:
-    """Return the ways from each node to itself, and no other."""
+def empty_paths(n_nodes: int) -> ShortestPaths:
+    """Return the table with the paths from each node to itself, and no other."""
     distance = np.full((n_nodes, n_nodes), np.inf, dtype=np.float32)
     np.fill_diagonal(distance, 0.0)
-    return Ways(distance, np.full((n_nodes, n_nodes), NONE, dtype=np.int16))
+    return ShortestPaths(distance, np.full((n_nodes, n_nodes), NONE, dtype=np.int16))
 
 
 @kernel
-def mend(ways, rows, edges, sights, new, new_length):
+def repair(paths, rows, edges, visibility, new, new_length):
     """
-    Make the ways from the nodes of ``rows`` shortest again where edges have come or gone.
+    Repair the shortest paths from the nodes of ``rows`` where edges have come or gone.
 
-    Dijkstra's algorithm (1959), which begins where known ways meet nodes that have lost theirs,
-    and where one of the ``new`` edges (k, 2), of ``new_length`` (k,), makes a way shorter.
+    Dijkstra's algorithm (1959), begun where paths that are still intact meet nodes that have lost
+    theirs, and where one of the ``new`` edges (k, 2), of ``new_length`` (k,), shortens a path.
     """
-    ways, edges, sights = borrowed(ways), borrowed(edges), borrowed(sights)
-    n_nodes = len(sights)
-    sound, waits = np.empty(n_nodes, dtype=np.int8), np.empty(n_nodes, dtype=np.bool_)
+    paths, edges, visibility = borrowed(paths), borrowed(edges), borrowed(visibility)
+    n_nodes = len(visibility)
+    intact, waits = np.empty(n_nodes, dtype=np.int8), np.empty(n_nodes, dtype=np.bool_)
     trail = np.empty(n_nodes, dtype=np.int64)
     for row in rows:
-        distance, previous = ways.distance[row], ways.previous[row]
-        _tell_sound(row, previous, sights, sound, trail)
+        distance, previous = paths.distance[row], paths.previous[row]
+        _mark_intact(row, previous, visibility, intact, trail)
         waits[:] = False
         for node in range(n_nodes):
-            if sound[node] == 0:
+            if intact[node] == 0:
                 distance[node], previous[node] = math.inf, NONE
                 for edge in range(edges.first[node], edges.first[node + 1]):
                     waits[edges.to[edge]] = True
         for k in range(len(new)):
             a, b = new[k]
             waits[a] = waits[a] or distance[a] + new_length[k] < distance[b]
-        waiting = [(distance[k], k) for k in range(n_nodes) if waits[k] and sound[k] == 1]
+        waiting = [(distance[k], k) for k in range(n_nodes) if waits[k] and intact[k] == 1]
         heapq.heapify(waiting)
         while waiting:
             length, node = heapq.heappop(waiting)
@@ -157,20 +158,20 @@ def mend(ways, rows, edges, sights, new, new_length):
 
 
 @kernel
-def _tell_sound(root, previous, sights, sound, trail):
-    """Write 1 for nodes whose way from the root still has all its edges, else 0."""
+def _mark_intact(root, previous, visibility, intact, trail):
+    """Write 1 for nodes whose path from the root still has all its edges, else 0."""
     unknown = -1
-    sound[:] = unknown
-    sound[root] = 1
-    for node in range(len(sound)):
+    intact[:] = unknown
+    intact[root] = 1
+    for node in range(len(intact)):
         n, k = 0, node
-        while sound[k] == unknown:
+        while intact[k] == unknown:
             trail[n] = k
             n += 1
             before = previous[k]
-            if before == NONE or sights[before, k] != SEEN:
-                sound[k] = 0
+            if before == NONE or visibility[before, k] != VISIBLE:
+                intact[k] = 0
             else:
                 k = before
         for i in range(n):
-            sound[trail[i]] = sound[k]
+            intact[trail[i]] = intact[k]

@@ -30,15 +30,6 @@ def inflate(occupied: Bools, radius: float) -> Bools:
     return distance < limit
 
 
-def is_inflated(occupied: Bools, row: int, column: int, radius: float) -> bool:
-    """Return whether a cell is within ``radius`` [cells] of an occupied one, as in ``inflate``."""
-    reach = int(min(radius, max(occupied.shape))) + 1
-    top, left = max(row - reach, 0), max(column - reach, 0)
-    bottom, right = row + reach + 1, column + reach + 1
-    window = occupied[top:bottom, left:right]
-    return bool(inflate(window, radius)[row - top, column - left])
-
-
 def free_distance(blocked: Bools, *, closed_rim: bool = True) -> NDArray[np.uint8]:
     """
     Return the distance in king's moves from each cell to the nearest blocked one, at most 255.

@@ -1,7 +1,7 @@
 """An occupancy grid as a space: free points, components, and the distance to walls."""
 
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Literal
 
@@ -13,20 +13,25 @@ from hnr_planner.core.spaces.curves.curve import first_exit_on_curve
 from hnr_planner.core.spaces.grid.cells import Bools, read_blocked, read_occupancy
 from hnr_planner.core.spaces.grid.components import island_points, nearest_in_component
 from hnr_planner.core.spaces.grid.curves import first_exit_from_grid
-from hnr_planner.core.spaces.grid.fields import components, free_distance, inflate, is_inflated
+from hnr_planner.core.spaces.grid.fields import components, free_distance, inflate
+from hnr_planner.core.spaces.grid.flood import flood_path_in_grid
 from hnr_planner.core.spaces.grid.frame import decimal, GridFrame
 from hnr_planner.core.spaces.grid.lattice import build_lattice, Lattice, rough_path
 from hnr_planner.core.spaces.grid.traversal import GridData
-from hnr_planner.core.spaces.primitives import component
+from hnr_planner.core.spaces.primitives import component, flood_path
 from hnr_planner.core.spaces.space import Space
 from hnr_planner.core.spaces.transformed import TransformedData
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+#: Value of cells of a Nav2 costmap that an obstacle's inflation blocks; obstacles have 100. A
+#: caller who takes cells from this value on as occupied has such a costmap.
+COSTMAP_INFLATED = 99
 #: Approximate number of cells in the sample for a mean over a map.
 TYPICAL_CELLS = 10_000
 
 first_exit_on_curve.register(GridData)(first_exit_from_grid)
+flood_path.register(GridData)(flood_path_in_grid)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -53,6 +58,8 @@ class GridSpace(Space):
     robot_radius: float
     data: GridData = field()  # no default: the base class has a property of this name
     _wall_distance: NDArray[np.uint8]
+    #: Cells that the inflation of a costmap blocks; None for a map that is no costmap.
+    _costmap_inflation: Bools | None = None
 
     dim = 2
 
@@ -83,7 +90,8 @@ class GridSpace(Space):
             A cell is blocked when its centre is within this distance [m] of the centre of an
             occupied cell. Unknown cells and the map's edge block, but are not inflated.
         occupied_threshold : int
-            Cells of at least this value, 1..100, are occupied.
+            Cells of at least this value, 1..100, are occupied. For a costmap of Nav2 it is 99:
+            then cells of 99 are known to be inflation, and those of 100 to be obstacles.
         unknown : 'blocked' or 'free'
             Whether unknown cells block or are free.
 
@@ -94,7 +102,10 @@ class GridSpace(Space):
 
         """
         occupied, closed = read_occupancy(data, occupied_threshold, unknown)
-        return cls._build(occupied, closed, resolution, origin, robot_radius)
+        space = cls._build(occupied, closed, resolution, origin, robot_radius)
+        if occupied_threshold == COSTMAP_INFLATED:
+            space = replace(space, _costmap_inflation=np.asarray(data) == COSTMAP_INFLATED)
+        return space
 
     @classmethod
     def from_blocked(
@@ -232,6 +243,14 @@ class GridSpace(Space):
         cells = np.stack([np.asarray(columns), np.asarray(rows)], axis=-1)
         return self.frame.from_kernel(cells + (self.frame.RIM + 0.5))
 
+    def to_cells(self, points: Floats) -> Floats:
+        """Return (column, row) of points (..., 2) [m] of the map frame, from the grid's corner."""
+        return self.frame.to_kernel(points) - self.frame.RIM
+
+    def from_cells(self, cells: Floats) -> Floats:
+        """Return points (..., 2) [m] of the map frame at (column, row) from the grid's corner."""
+        return self.frame.from_kernel(cells + self.frame.RIM)
+
     # -- free points -----------------------------------------------------------------------------
 
     @property
@@ -243,6 +262,28 @@ class GridSpace(Space):
     def occupied(self) -> Bools:
         """Cells (rows, cols) that the map says are occupied, before inflation."""
         return self._wall_distance[1:-1, 1:-1] == 0
+
+    def is_obstacle(self, row: int, column: int) -> bool:
+        """Return whether a cell is occupied, other than by the inflation of a costmap."""
+        inflation = self._costmap_inflation
+        is_inflation = inflation is not None and bool(inflation[row, column])
+        return bool(self._wall_distance[row + 1, column + 1] == 0) and not is_inflation
+
+    def inflated(self, rows: slice, columns: slice) -> Bools:
+        """Return which cells of a window are near an obstacle, not in it: blocked by inflation."""
+        cells = self.robot_radius / self.resolution
+        reach = int(min(cells, max(self.shape))) + 1
+        top, left = max(rows.start - reach, 0), max(columns.start - reach, 0)
+        bottom, right = rows.stop + reach, columns.stop + reach
+        occupied = self._wall_distance[1:-1, 1:-1][top:bottom, left:right] == 0
+        inner = (
+            slice(rows.start - top, rows.stop - top),
+            slice(columns.start - left, columns.stop - left),
+        )
+        inflated = inflate(occupied, cells)[inner] & ~occupied[inner]
+        if self._costmap_inflation is not None:
+            inflated |= self._costmap_inflation[rows, columns]
+        return inflated
 
     def reaches_to(self, point: ArrayLike) -> bool:
         """Return whether ``point`` (2,) [m] lies on the map, its edge included."""
@@ -266,11 +307,13 @@ class GridSpace(Space):
     def _why_not_free_in_cell(self, row: int, column: int) -> str:
         """Return in words why a point in cell [row, column] is not free."""
         cell = f'cell [{row}, {column}]'
-        if self.occupied[row, column]:
+        if self.is_obstacle(row, column):
             return f'inside an obstacle: {cell} is occupied'
         if not self.blocked[row, column]:
             return f'on the edge of a blocked cell beside {cell}'
-        if is_inflated(self.occupied, row, column, self.robot_radius / self.resolution):
+        if self._wall_distance[row + 1, column + 1] == 0:
+            return f'within the inflation of the costmap around an obstacle, in {cell}'
+        if self.inflated(slice(row, row + 1), slice(column, column + 1)).item():
             return f'within the robot radius of {self.robot_radius:g} m of an obstacle, in {cell}'
         return f'in unknown space: {cell} is unknown'
 
@@ -285,6 +328,15 @@ class GridSpace(Space):
         """
         label = self._component(check_point('a', a, 2))
         return label != 0 and label == self._component(check_point('b', b, 2))
+
+    @property
+    def components(self) -> NDArray[np.int32]:
+        """Component (rows, cols) of free space that each cell belongs to; 0 where blocked."""
+        return self.data.labels[1:-1, 1:-1]
+
+    def component_of(self, point: ArrayLike) -> int:
+        """Return the component that holds ``point`` (2,) [m]; 0 where it is not free."""
+        return self._component(check_point('point', point, 2))
 
     def region_reachable(self, start: ArrayLike, goal: ArrayLike, radius: float) -> bool:
         """Return whether a path leads from ``start`` to within ``radius`` [m] of ``goal``."""

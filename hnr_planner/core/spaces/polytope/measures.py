@@ -24,6 +24,8 @@ UNEVEN = 1e3
 SCALINGS = 20
 #: Radius, in scaled coordinates, up to which a ball is the error of a linear program.
 FLAT = 1e-9
+#: Largest number of rows that a message lists.
+LISTED = 8
 #: Largest number of Newton steps to the analytic centre.
 NEWTON_STEPS = 100
 #: Newton decrement below which the centre is found.
@@ -98,9 +100,9 @@ def largest_ball(normals: Floats, offsets: Floats, rows: NDArray[np.intp]) -> Ba
 
 def _why_no_ball(found: Any, normals: Floats, rows: NDArray[np.intp]) -> SpaceError:
     """Return the error that says why a linear program for the largest ball has no solution."""
-    if found.status != 0:
+    if found.status != 0 or found.x[-1] > FLAT:
         return why_no_reach(normals)
-    binding = ', '.join(map(str, rows[np.flatnonzero(found.ineqlin.marginals)]))
+    binding = _listed(rows[np.flatnonzero(found.ineqlin.marginals)])
     if found.x[-1] < -FLAT:
         return SpaceError(
             f'the polytope must have an inside, but no point holds all of a x <= b: rows '
@@ -112,6 +114,12 @@ def _why_no_ball(found: Any, normals: Floats, rows: NDArray[np.intp]) -> SpaceEr
         f'x = x0 + N y, where x0 holds the equations and the columns of N are a basis of the null '
         f'space of their matrix (scipy.linalg.null_space): (a N) y < b - a x0'
     )
+
+
+def _listed(rows: NDArray[np.intp]) -> str:
+    """Return the first of some row numbers in words."""
+    more = '' if len(rows) <= LISTED else f' and {len(rows) - LISTED} more'
+    return ', '.join(map(str, rows[:LISTED])) + more
 
 
 def why_no_reach(normals: Floats) -> SpaceError:

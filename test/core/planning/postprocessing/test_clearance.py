@@ -11,7 +11,6 @@ from hnr_planner import core
 from hnr_planner.core import ALGORITHMS, GridSpace, PlannerStatus, RequestError
 from hnr_planner.core.planning.homology import islands_at, signature
 from hnr_planner.core.planning.limits import Budget
-from hnr_planner.core.planning.planners.hit_and_run_connect import HitAndRunConnect
 from hnr_planner.core.planning.postprocessing import clearance as module
 from hnr_planner.core.planning.postprocessing.clearance import increase_clearance, path_cost
 from hypothesis import given, settings, strategies
@@ -233,7 +232,6 @@ class WalllessSpace(GridSpace):
         ({'clearance': math.inf}, 'clearance must be in 0..1e'),
         ({'clearance': 'far'}, "clearance must be a number, got 'far'"),
         ({'clearance': 0.5, 'simplify': False}, 'clearance must be 0 when simplify is false'),
-        ({'clearance': 0.5, 'algorithm': 'rrt'}, "rrt has no setting 'clearance'"),
     ],
 )
 def test_what_cannot_be_had_is_refused(arguments: dict, words: str):
@@ -249,9 +247,9 @@ def test_a_space_without_clearance_says_so():
     assert plan(space, *ends).status is PlannerStatus.SOLVED
 
 
-@pytest.mark.parametrize('algorithm', [name for name in ALGORITHMS if 'rrt' not in name])
-def test_a_planner_value_has_the_clearance_as_a_field(algorithm: str):
-    if algorithm != 'hit_and_run':
-        by_name = plan(SPACE, START, GOAL, algorithm=algorithm, clearance=0.3, seed=2)
-        by_value = plan(SPACE, START, GOAL, algorithm=HitAndRunConnect(clearance=0.3), seed=2)
-        np.testing.assert_array_equal(by_name.path, by_value.path)
+@pytest.mark.parametrize('algorithm', ALGORITHMS)
+def test_every_planner_keeps_a_clearance(algorithm: str):
+    request = {'algorithm': algorithm, 'seed': 2, 'time_limit': math.inf}
+    paths = [plan(SPACE, START, GOAL, clearance=c, **request).path for c in (0.0, 0.3)]
+    costs = [path_cost(SPACE, path, 0.3) for path in paths]
+    assert costs[1] < costs[0]

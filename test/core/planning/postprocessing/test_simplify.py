@@ -8,10 +8,21 @@ import sys
 from test.brute_force import path_collisions
 from test.laws import maps
 
-from hnr_planner.core import GridSpace, plan, RequestError, simplify
+from hnr_planner.core import (
+    BallSpace,
+    BoxSpace,
+    DifferenceSpace,
+    GridSpace,
+    OracleSpace,
+    plan,
+    RequestError,
+    simplify,
+    Space,
+)
 from hnr_planner.core.lengths import path_length
 from hnr_planner.core.planning.homology import NO_ISLANDS
 from hnr_planner.core.planning.postprocessing.shortcuts import pull, skip
+from numba import njit
 import numpy as np
 from numpy.typing import NDArray
 import pytest
@@ -137,3 +148,70 @@ def test_compilation_does_not_count_in_the_time_limit(tmp_path: Path):
 def test_a_path_that_is_none_is_refused(path, words: str):
     with pytest.raises(RequestError, match=words):
         simplify(SPACE, path, seed=0)
+
+
+# -- spaces that sample their segments, and more dimensions --------------------------------------
+
+
+def shortcuts_of_vertices(space: Space, path: NDArray, seed: int, n_tries: int = 1000) -> NDArray:
+    """Shorten by plain random shortcuts: drop what lies between two vertices if that is free."""
+    rng = np.random.default_rng(seed)
+    for _ in range(n_tries):
+        i, j = sorted(rng.integers(len(path), size=2))
+        if j - i > 1 and space.is_motion_valid(path[i], path[j]):
+            path = np.concatenate([path[: i + 1], path[j:]])
+    return path
+
+
+def wall(dim: int) -> OracleSpace:
+    """Return a unit cube with a wall that leaves a way over it."""
+    return OracleSpace(
+        njit(lambda x: not (0.4 < x[0] < 0.6 and x[1] < 0.8)),
+        [0.0] * dim,
+        [1.0] * dim,
+        resolution=0.01,
+    )
+
+
+def balls(dim: int) -> DifferenceSpace:
+    """Return a cube with a large ball in its middle and small ones around."""
+    rng = np.random.default_rng(dim)
+    centres = rng.uniform(1.0, 9.0, (20, dim))
+    centres[0] = 5.0
+    obstacles = [BallSpace(x, 4.0 if k == 0 else 1.5) for k, x in enumerate(centres)]
+    return DifferenceSpace(BoxSpace([0.0] * dim, [10.0] * dim), *obstacles)
+
+
+@pytest.mark.parametrize(
+    ('space', 'start', 'goal'),
+    [
+        (wall(2), [0.1, 0.1], [0.9, 0.1]),
+        (wall(3), [0.1, 0.1, 0.1], [0.9, 0.1, 0.1]),
+        (wall(7), [0.1] * 7, [0.9] + [0.1] * 6),
+        (balls(3), [0.5] * 3, [9.5] * 3),
+        (balls(5), [0.5] * 5, [9.5] * 5),
+    ],
+    ids=['wall 2', 'wall 3', 'wall 7', 'balls 3', 'balls 5'],
+)
+def test_no_path_is_left_raw_or_longer_than_by_plain_shortcuts(space: Space, start, goal):
+    for seed in range(8):
+        request = {'seed': seed, 'time_limit': math.inf}
+        raw = plan(space, start, goal, simplify=False, **request).path
+        result = plan(space, start, goal, **request)
+        assert space.is_path_free(result.path)
+        assert 'no shortcut is free' not in result.message
+        plain = path_length(shortcuts_of_vertices(space, raw, seed))
+        assert result.length <= 1.02 * plain < 1.02 * path_length(raw)
+
+
+def test_a_path_without_a_free_shortcut_is_said_to_have_none():
+    """A corridor so narrow that every vertex of its path is needed."""
+    blocked = np.ones((5, 5), dtype=bool)
+    blocked[1, 1:4] = blocked[1:4, 3] = False
+    space = GridSpace.from_blocked(blocked)
+    taut = simplify(space, [(1.5, 1.5), (3.5, 1.5), (3.5, 3.5)], seed=0)
+    assert path_length(taut) < 4.0
+    result = plan(space, (1.5, 1.5), (3.5, 3.5), seed=0, time_limit=math.inf)
+    assert ('no shortcut is free' in result.message) == (
+        result.length == result.first_solution.length
+    )

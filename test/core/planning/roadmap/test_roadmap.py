@@ -15,8 +15,8 @@ from hnr_planner.core import (
     RequestError,
     Roadmap,
 )
-from hnr_planner.core.planning.roadmap.build import learn
-from hnr_planner.core.planning.roadmap.data import nothing_known
+from hnr_planner.core.planning.roadmap.build import build_data
+from hnr_planner.core.planning.roadmap.data import empty_roadmap
 from hnr_planner.maps import spiral
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -59,7 +59,7 @@ def check_answers(roadmap: Roadmap, blocked: Bools, seed: int, n_requests: int =
 
 def poor_roadmap(space: GridSpace, n_draws: int) -> Roadmap:
     """Return a roadmap that has hardly looked around."""
-    return Roadmap(0, learn(nothing_known(space), space, n_draws, 0, None))
+    return Roadmap(0, build_data(empty_roadmap(space), space, n_draws, 0, None))
 
 
 def ask(roadmap: Roadmap, start: Floats, goal: Floats, **settings: Any) -> PlanResult:
@@ -225,12 +225,12 @@ def changed_maps() -> dict[str, Bools]:
 def test_after_a_change_it_is_as_valid_as_a_new_one(change: str):
     blocked = changed_maps()[change]
     space = GridSpace.from_blocked(blocked, RESOLUTION, ORIGIN)
-    mended, new = ROADMAP.update(space), Roadmap.build(space, seed=9)
-    check_answers(mended, blocked, seed=3, n_requests=100)
+    repaired, new = ROADMAP.update(space), Roadmap.build(space, seed=9)
+    check_answers(repaired, blocked, seed=3, n_requests=100)
     ratios = []
     for start, goal in requests(space, 100, seed=4):
         if space.connected(start, goal):
-            lengths = [ask(x, start, goal).length for x in (mended, new)]
+            lengths = [ask(x, start, goal).length for x in (repaired, new)]
             ratios.append(lengths[0] / lengths[1])
     assert np.quantile(ratios, 0.9) <= 1.001
     assert np.mean(ratios) <= 1.01

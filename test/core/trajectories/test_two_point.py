@@ -4,7 +4,7 @@ import math
 from typing import Any
 
 from hnr_planner.core.systems import DoubleIntegrator
-from hnr_planner.core.trajectories.connection import connect, empty_connection
+from hnr_planner.core.trajectories.two_point import connect, empty_connection
 import numpy as np
 import pytest
 

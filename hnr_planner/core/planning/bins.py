@@ -1,0 +1,55 @@
+"""Square bins over the first two coordinates of a box, with a rim of empty bins all around."""
+
+import math
+from typing import NamedTuple
+
+from hnr_planner.core.checks import Floats
+from hnr_planner.core.kernels.kernel import kernel
+import numpy as np
+
+
+class Bins(NamedTuple):
+    """
+    Square bins, numbered row by row.
+
+    Attributes
+    ----------
+    lower : (dim,)
+        Corner of the box, where the bins inside the rim begin.
+    side : float
+        Side of a bin.
+    columns : int
+        Bins in a row, those of the rim included.
+    rows : int
+        Rows, those of the rim included.
+
+    """
+
+    lower: Floats
+    side: float
+    columns: int
+    rows: int
+
+
+@kernel
+def make_bins(lower, upper, side):
+    """Return bins of this side over the box from ``lower`` to ``upper`` (dim,)."""
+    width, height = upper[0] - lower[0], upper[1] - lower[1] if len(lower) > 1 else 0.0
+    return Bins(lower, side, int(width / side) + 3, int(height / side) + 3)
+
+
+@kernel
+def bin_of(bins, x):
+    """Return the number of the bin that holds ``x`` (dim,)."""
+    column = 1 + math.floor((x[0] - bins.lower[0]) / bins.side)
+    row = 1 + math.floor((x[1] - bins.lower[1]) / bins.side) if len(x) > 1 else 1
+    return row * bins.columns + column
+
+
+@kernel
+def bins_of(bins, points):
+    """Return the numbers (k,) of the bins that hold ``points`` (k, dim)."""
+    numbers = np.empty(len(points), dtype=np.int64)
+    for k in range(len(points)):
+        numbers[k] = bin_of(bins, points[k])
+    return numbers

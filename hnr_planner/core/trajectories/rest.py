@@ -1,0 +1,78 @@
+"""
+How a start in motion comes to rest: braked straight, or by a tree of Hit-and-Run steps on curves.
+
+Where the boundary is in the way of braking straight, a tree grows from the start: a step has a
+uniform direction of full acceleration, and a uniform time until its curve meets the boundary or
+the limit on speed. It ends with the first state that can be braked straight.
+"""
+
+import math
+
+from hnr_planner.core.kernels.kernel import kernel
+from hnr_planner.core.kernels.streams import uniform
+from hnr_planner.core.lengths import norm
+from hnr_planner.core.sampling.draws import draw_direction
+from hnr_planner.core.systems.primitives import brake, contact, move
+from hnr_planner.core.trajectories.problem import SHORTEST_STEP
+from hnr_planner.core.trajectories.steps import can_brake
+from hnr_planner.core.trees import NONE
+
+#: Longest step, in units of the time to brake from full speed.
+HORIZON = 2.0
+#: Fraction of the steps that begin at the start: most states that come of it cannot be braked.
+FROM_START = 0.5
+
+
+@kernel
+def come_to_rest(problem, rng, steps, n_rows, n_iterations):
+    """Grow the tree until a state can be braked: (rows, transitions, row at rest or NONE)."""
+    if n_rows == 1 and can_brake(problem, steps.states[0], steps.controls.shape[1]):
+        n_rows = _braked(problem.system, steps, n_rows, 0)
+        return n_rows, 0, n_rows - 1
+    for k in range(n_iterations):
+        row = 0 if uniform(rng) < FROM_START else math.floor(uniform(rng) * n_rows)
+        if not _curve_step(problem, rng, steps, row, n_rows):
+            continue
+        n_rows += 1
+        if can_brake(problem, steps.states[n_rows - 1], steps.controls.shape[1]):
+            n_rows = _braked(problem.system, steps, n_rows, n_rows - 1)
+            return n_rows, k + 1, n_rows - 1
+    return n_rows, n_iterations, NONE
+
+
+@kernel
+def _braked(system, steps, n_rows, row):
+    """Add the row that braking ``row`` leads to, unless it is at rest; return the rows."""
+    state, control, end = steps.states[row], steps.controls[n_rows], steps.states[n_rows]
+    duration = brake(system, state, control)
+    if duration < SHORTEST_STEP:
+        return n_rows
+    move(system, state, control, duration, end)
+    dim = len(control)
+    end[dim:] = 0.0
+    steps.parents[n_rows], steps.durations[n_rows] = row, duration
+    return n_rows + 1
+
+
+@kernel
+def _curve_step(problem, rng, steps, row, n_rows):
+    """Write a step of Hit-and-Run on curves from ``row``; return whether there is room for it."""
+    system = problem.system
+    state, control, end = steps.states[row], steps.controls[n_rows], steps.states[n_rows]
+    dim = len(control)
+    draw_direction(rng, control)
+    speed, along = norm(state[dim:]), 0.0
+    for i in range(dim):
+        control[i] *= system.max_acceleration
+        along += control[i] * state[dim + i]
+    strongest = system.max_acceleration
+    unused = max(system.max_speed**2 - speed * speed, 0.0)
+    until_fastest = (math.sqrt(along * along + strongest * strongest * unused) - along) / (
+        strongest * strongest
+    )
+    longest = min(until_fastest, HORIZON * system.max_speed / strongest)
+    met = contact(system, problem.geometric.space, state, control, longest)
+    duration = uniform(rng) * min(met, longest)
+    move(system, state, control, duration, end)
+    steps.parents[n_rows], steps.durations[n_rows] = row, duration
+    return duration >= SHORTEST_STEP and norm(end[dim:]) <= system.max_speed

@@ -1,0 +1,64 @@
+"""Motions from stop to stop: at rest at each vertex of a polyline, as fast as possible between."""
+
+import math
+
+from hnr_planner.core.checks import Floats
+from hnr_planner.core.kernels.kernel import kernel
+from hnr_planner.core.lengths import distance
+from hnr_planner.core.planning.homology import NO_ISLANDS
+from hnr_planner.core.planning.planner import Problem
+from hnr_planner.core.planning.postprocessing.shortcuts import pull, skip
+from hnr_planner.core.systems.primitives import move
+from hnr_planner.core.trajectories.problem import SHORTEST_STEP
+import numpy as np
+
+#: Visibility tests that shorten the polyline by each of two methods before it is driven.
+TESTS = 2000
+
+
+def shorten_stops(geometric: Problem, stops: Floats) -> Floats:
+    """Return a free polyline (k, dim) without the stops (m, dim) not needed, and pulled taut."""
+    kept = np.zeros(len(stops), dtype=np.int64)
+    n_kept, _ = skip(geometric.space, NO_ISLANDS, stops, kept, 1, True, TESTS)
+    beyond = kept[n_kept - 1] + 1
+    left = np.concatenate([stops[kept[:n_kept]], stops[beyond:]])
+    taut: Floats
+    taut, _, _ = pull(geometric.space, NO_ISLANDS, left, 1, geometric.margin, TESTS)
+    return taut
+
+
+@kernel
+def drive_stops(system, stops):
+    """
+    Return the motion (durations, states, controls) that rests at each of ``stops`` (m, dim).
+
+    Each segment has a ramp up, a cruise at full speed where there is room for it, and a ramp down.
+    """
+    n, dim = len(stops) - 1, stops.shape[1]
+    durations, controls = np.empty(3 * n), np.zeros((3 * n, dim))
+    states = np.zeros((3 * n + 1, 2 * dim))
+    states[0, :dim] = stops[0]
+    rows = 0
+    for k in range(n):
+        length = distance(stops[k], stops[k + 1])
+        strongest = system.max_acceleration
+        speed = min(math.sqrt(strongest * length), system.max_speed)
+        ramp = speed / strongest
+        if ramp < SHORTEST_STEP:
+            continue
+        cruise = length / speed - ramp
+        if 1e-12 * ramp < cruise < SHORTEST_STEP:
+            # No cruise, but ramps that take as long at full speed.
+            ramp = length / speed
+            strongest, cruise = speed / ramp, 0.0
+        u = (stops[k + 1] - stops[k]) / length
+        for sign, duration in ((1.0, ramp), (0.0, cruise), (-1.0, ramp)):
+            if duration < SHORTEST_STEP:
+                continue
+            durations[rows] = duration
+            for i in range(dim):
+                controls[rows, i] = sign * strongest * u[i]
+            move(system, states[rows], controls[rows], duration, states[rows + 1])
+            rows += 1
+        states[rows, :dim], states[rows, dim:] = stops[k + 1], 0.0
+    return durations[:rows], states[: rows + 1], controls[:rows]

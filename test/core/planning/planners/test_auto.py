@@ -1,0 +1,100 @@
+"""The planner for any request: solved wherever a flood fill finds a path, and else as before."""
+
+import math
+from test.brute_force import path_collisions
+from typing import Any
+
+from hnr_planner.core import GridSpace, plan, PlannerStatus, PlanResult
+from hnr_planner.core.kernels.streams import stream
+from hnr_planner.core.planning.planner import make_problem
+from hnr_planner.core.planning.planners.auto import Auto, FLOOD_AFTER
+from hnr_planner.core.planning.planners.hit_and_run_connect import HitAndRunConnect
+import numpy as np
+from numpy.typing import NDArray
+import pytest
+
+
+def solve(space: GridSpace, start: Any, goal: Any, **given: Any) -> PlanResult:
+    return plan(space, start, goal, **{'seed': 0, 'time_limit': math.inf, **given})
+
+
+def strip() -> NDArray[np.bool_]:
+    """Return a strip of 600 x 5 cells, at its end a shaft and a gap, both one cell wide."""
+    blocked = np.zeros((300, 600), dtype=bool)
+    blocked[5, 1:] = True
+    blocked[5:300, 1] = True
+    blocked[13, 1] = False
+    return blocked
+
+
+def maze(n: int, seed: int) -> NDArray[np.bool_]:
+    """Return a maze of n x n rooms of one cell, without loops."""
+    rng, blocked = np.random.default_rng(seed), np.ones((2 * n + 1, 2 * n + 1), dtype=bool)
+    stack = [(0, 0)]
+    blocked[1, 1] = False
+    while stack:
+        row, column = stack[-1]
+        for i, j in rng.permutation([(0, 1), (1, 0), (0, -1), (-1, 0)]).tolist():
+            inside = 0 <= row + i < n and 0 <= column + j < n
+            if inside and blocked[2 * (row + i) + 1, 2 * (column + j) + 1]:
+                blocked[2 * row + 1 + i, 2 * column + 1 + j] = False
+                blocked[2 * (row + i) + 1, 2 * (column + j) + 1] = False
+                stack.append((row + i, column + j))
+                break
+        else:
+            stack.pop()
+    return blocked
+
+
+@pytest.mark.parametrize('seed', range(3))
+def test_a_long_strip_with_a_narrow_end_is_solved(seed: int):
+    blocked = strip()
+    space = GridSpace.from_blocked(blocked, 0.05)
+    result = solve(space, (596.7 * 0.05, 0.085), (24.0, 7.5), seed=seed)
+    assert result.status is PlannerStatus.SOLVED
+    assert path_collisions(result.path, blocked, 0.05) == []
+    if result.planner == 'flood_fill':
+        assert result.iterations == FLOOD_AFTER
+        assert len(result.samples) > FLOOD_AFTER  # those of the search are kept
+    again = solve(space, (596.7 * 0.05, 0.085), (24.0, 7.5), seed=seed)
+    np.testing.assert_array_equal(result.path, again.path)
+
+
+@pytest.mark.parametrize('seed', range(3))
+@pytest.mark.parametrize('goal_radius', [0.0, 0.3])
+def test_a_maze_of_one_cell_is_solved(seed: int, goal_radius: float):
+    blocked = maze(40, seed)
+    space = GridSpace.from_blocked(blocked, 0.1, (1.0, 2.0, 0.5))
+    start, goal = space.cell_centres(1, 1), space.cell_centres(79, 79)
+    result = solve(space, start, goal, seed=seed, goal_radius=goal_radius)
+    assert result.status is PlannerStatus.SOLVED
+    assert path_collisions(result.path, blocked, 0.1, (1.0, 2.0, 0.5)) == []
+    np.testing.assert_array_equal(result.path[0], start)
+    assert math.dist(result.path[-1], goal) <= goal_radius
+
+
+def test_a_region_whose_centre_is_blocked_is_flooded_into():
+    blocked = maze(40, 1)
+    blocked[79, 79] = True
+    space = GridSpace.from_blocked(blocked, 0.1)
+    goal = space.cell_centres(79, 79)
+    result = solve(space, space.cell_centres(1, 1), goal, goal_radius=0.16)
+    assert result.status is PlannerStatus.SOLVED
+    assert path_collisions(result.path, blocked, 0.1) == []
+    assert math.dist(result.path[-1], goal) <= 0.16
+
+
+@pytest.mark.parametrize('batch', [1_000, FLOOD_AFTER, 3 * FLOOD_AFTER])
+def test_the_fall_back_does_not_depend_on_the_size_of_the_batches(batch: int):
+    space = GridSpace.from_blocked(maze(40, 2))
+    problem = make_problem(space, np.array([1.5, 1.5]), np.array([79.5, 79.5]), 0.0)
+    search = Auto().start(problem, stream(1))
+    while not search.solved:
+        search.advance(batch)
+    assert search.iterations <= FLOOD_AFTER
+    searches = [Auto().start(problem, stream(1)), HitAndRunConnect().start(problem, stream(1))]
+    for other in searches:
+        other.advance(FLOOD_AFTER)
+    assert searches[0].made_by == search.made_by
+    np.testing.assert_array_equal(search.path, searches[0].path)
+    np.testing.assert_array_equal(search.samples, searches[1].samples)
