@@ -10,8 +10,6 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 Floats = NDArray[np.float64]
-#: What ``check_seed`` accepts.
-Seed = int | np.random.SeedSequence | np.random.Generator | np.random.BitGenerator | None
 
 #: What is taken as a seed: ``check_seed`` makes a whole number of it.
 Seed: TypeAlias = (
