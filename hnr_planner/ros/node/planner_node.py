@@ -1,26 +1,26 @@
-"""The executable ``planner_node``: prepare, then serve."""
+"""The executable ``planner_node``: serve at once, and compile in the background."""
 
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 import os
 from pathlib import Path
 import sys
-import threading
 import time
 from typing import NoReturn
 
-from hnr_planner.core import warm_up
+from hnr_planner.core.kernels.compilation import status
+from hnr_planner.core.warm_up import compile_in_background
 from hnr_planner.ros.node.help import help_text
 from hnr_planner.ros.node.planner import PlannerNode, SERVICES, THREADS
 from hnr_planner.ros.node.process import run
 from hnr_planner.server.request_log import shortened
+from rclpy.clock import Clock, ClockType
 from rclpy.impl.rcutils_logger import RcutilsLogger
 
 #: Name of the node.
 NAME = 'hnr_planner'
 
-#: Seconds between the lines about a preparation that goes on.
-PROGRESS_EVERY = 3.0
+#: Seconds between the lines about a compilation that goes on.
+PROGRESS_EVERY = 10.0
 
 
 def main(arguments: Sequence[str] | None = None) -> NoReturn:
@@ -47,6 +47,7 @@ def _make_node() -> PlannerNode:
     ready = f'ready after {_process_age():.1f} s, {node.state}'
     radius = f'robot radius {node.settings.robot_radius:g} m'
     node.get_logger().info(shortened(f'{ready}, {radius}: {services}'))
+    _log_progress(node)
     return node
 
 
@@ -59,29 +60,30 @@ def _process_age() -> float:
 
 
 def _prepare(logger: RcutilsLogger) -> None:
-    """Compile everything that a request needs, or load it from the cache."""
-    logger.info('preparing: loading or compiling the planners (a minute or two the first time)')
-    with _progress(logger):
-        warm_up()
+    """Load what requests need; what is not in the cache is compiled while they run."""
+    logger.info('preparing')
+    compile_in_background()
 
 
-@contextmanager
-def _progress(logger: RcutilsLogger) -> Iterator[None]:
-    """Log every few seconds that the ``with`` block is still at work."""
-    done = threading.Event()
-    began = time.monotonic()
+def _log_progress(node: PlannerNode) -> None:
+    """Log every few seconds how far the compilation is, while there is one."""
+    was_compiling = False
 
     def log() -> None:
-        while not done.wait(PROGRESS_EVERY):
-            logger.info(f'still preparing ({time.monotonic() - began:.0f} s)')
+        nonlocal was_compiling
+        progress = status()
+        if progress.pending:
+            was_compiling = True
+            total = progress.compiled + progress.pending
+            node.get_logger().info(
+                f'still compiling, {progress.compiled} of {total} kernels: what has none yet runs '
+                'interpreted, and slower'
+            )
+        elif was_compiling:
+            was_compiling = False
+            node.get_logger().info(f'{progress}, after {_process_age():.0f} s')
 
-    thread = threading.Thread(target=log, daemon=True)
-    thread.start()
-    try:
-        yield
-    finally:
-        done.set()
-        thread.join()
+    node.create_timer(PROGRESS_EVERY, log, clock=Clock(clock_type=ClockType.STEADY_TIME))
 
 
 if __name__ == '__main__':

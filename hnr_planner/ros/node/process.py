@@ -53,7 +53,7 @@ def run(
     threads : int
         Threads that run callbacks.
     prepare : callable, optional
-        Long work before ROS is started; a signal ends it at once.
+        Work before ROS is started; a signal ends it at once.
     before_shutdown : callable, optional
         Ends the node's running callbacks.
 
