@@ -6,6 +6,7 @@ from pathlib import Path
 import subprocess
 import sys
 from test.brute_force import path_collisions
+from test.core.planning.searches import plan
 from test.laws import maps
 
 from hnr_planner.core import (
@@ -14,7 +15,6 @@ from hnr_planner.core import (
     DifferenceSpace,
     GridSpace,
     OracleSpace,
-    plan,
     RequestError,
     simplify,
     Space,
