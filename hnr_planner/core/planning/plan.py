@@ -5,6 +5,7 @@ The planners search and count. ``plan`` validates the request, enforces its limi
 result.
 """
 
+from dataclasses import replace
 import math
 from typing import Any
 
@@ -150,7 +151,11 @@ def plan(
     else:
         result = _result_of_search(request, effort, budget, began)
     if n_paths > 1 and result.status is PlannerStatus.SOLVED:
-        result = with_alternatives(request, result, n_paths, budget, began)
+        found = result
+        result = budget.within(
+            lambda: with_alternatives(request, found, n_paths, budget, began),
+            replace(found, cut_by_time=True),
+        )
     return moved.lead_out(result)
 
 

@@ -23,10 +23,10 @@ from hnr_planner.core.spaces.primitives import component
 from hnr_planner.core.spaces.space import Space
 from numpy.typing import ArrayLike
 
-#: Rounds of looking for better answers in a second of ``optimize_for``: about half of what a
-#: processor of 2020 does on building maps, so that the clock hardly ever cuts. And the rounds in a
-#: row without a gain after which no more are tried.
-ROUNDS_PER_SECOND, PATIENCE = 1000, 10
+#: Rounds of looking for better answers for each second of ``optimize_for``, and rounds in a row
+#: without a gain after which no more are tried. On an office map a round takes about a millisecond
+#: on a busy machine, so the clock hardly ever cuts; after five rounds .02 % are left to gain.
+ROUNDS_PER_SECOND, PATIENCE = 300, 5
 #: Largest clearance that may be asked for [m].
 CLEARANCE_MAX = 1e6
 

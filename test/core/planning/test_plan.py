@@ -4,11 +4,12 @@ import math
 import subprocess
 import sys
 from test.brute_force import path_collisions
+from test.core.planning.searches import plan
 from test.laws import maps
 import threading
 import time
 
-from hnr_planner.core import ALGORITHMS, GridSpace, plan, PlannerStatus, RequestError, RRT, warm_up
+from hnr_planner.core import ALGORITHMS, GridSpace, PlannerStatus, RequestError, RRT, warm_up
 from hnr_planner.maps import spiral
 import numpy as np
 import pytest
@@ -17,8 +18,6 @@ BLOCKED = maps.rooms(60, 80, 10, seed=4)
 SPACE = GridSpace.from_blocked(BLOCKED, 0.1)
 START, GOAL = SPACE.cell_centres(2, 2), SPACE.cell_centres(57, 75)
 
-#: Success must not depend on how fast the machine is.
-UNLIMITED = {'time_limit': math.inf}
 NARROW = spiral(0.4)
 HARD = GridSpace.from_blocked(NARROW.blocked, NARROW.resolution)
 
@@ -26,7 +25,7 @@ HARD = GridSpace.from_blocked(NARROW.blocked, NARROW.resolution)
 @pytest.fixture(scope='module', autouse=True)
 def compiled() -> None:
     """Keep the compiler out of what tests here measure by the clock."""
-    warm_up()
+    warm_up('paths')
 
 
 def hard(**arguments):
@@ -110,9 +109,7 @@ def test_more_searches_never_give_a_longer_path():
 
 def test_optimizing_for_a_time_is_bounded_by_a_count_of_searches():
     """The clock has no part in it where it does not cut: the same seed, the same path."""
-    once, *often = (
-        plan(SPACE, START, GOAL, seed=4, optimize_for=t, **UNLIMITED) for t in (0, 5, 5)
-    )
+    once, *often = (plan(SPACE, START, GOAL, seed=4, optimize_for=t) for t in (0, 5, 5))
     assert often[0].length < once.length
     assert not often[0].cut_by_time
     np.testing.assert_array_equal(often[0].path, often[1].path)
@@ -122,7 +119,7 @@ def test_optimizing_for_a_time_is_bounded_by_a_count_of_searches():
 def test_the_clock_cuts_what_is_optimized_for_a_time():
     began = time.perf_counter()
     request = {'seed': 4, 'optimize_for': 0.2, 'optimize_iterations': 10**9}
-    result = plan(SPACE, START, GOAL, **request, **UNLIMITED)
+    result = plan(SPACE, START, GOAL, **request)
     assert 0.2 <= time.perf_counter() - began < 30.0
     assert result.status is PlannerStatus.SOLVED
     assert result.cut_by_time
@@ -134,9 +131,7 @@ def test_optimizing_ends_where_nothing_is_gained():
     blocked[:, 20] = True
     blocked[10, 20] = False
     space = GridSpace.from_blocked(blocked)
-    few, many = (
-        plan(space, (5.0, 3.0), (35.0, 3.0), seed=1, optimize_for=t, **UNLIMITED) for t in (1, 100)
-    )
+    few, many = (plan(space, (5.0, 3.0), (35.0, 3.0), seed=1, optimize_for=t) for t in (1, 100))
     assert few.iterations == many.iterations
 
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from functools import cache
+from test.core.planning.searches import plan
 from test.dense_check import collisions
 from typing import NamedTuple
 
@@ -12,7 +13,6 @@ from hnr_planner.core import (
     DifferenceSpace,
     GridSpace,
     OracleSpace,
-    plan,
     PlannerStatus,
     PolygonSpace,
     ProductSpace,

@@ -278,8 +278,8 @@ def test_a_path_is_pulled_taut_on_its_side_of_every_island(seed: int):
     space = GridSpace.from_blocked(blocked)
     pillar = islands_at(space.island_points)
     path = detour(beyond=50.0)
-    limits, rng = module.Limits(math.inf), stream(seed)
-    taut = shorten(space, path, rng, limits, islands=pillar)
+    budget, rng = module.Budget(math.inf), stream(seed)
+    taut = shorten(space, path, rng, budget, islands=pillar)
     assert path_collisions(taut, blocked, 1.0) == []
     assert signature(pillar, space.to_kernel(taut)) == signature(pillar, space.to_kernel(path))
     assert windings([(30.0, 30.0)], path, taut) == [0]
@@ -290,8 +290,8 @@ def test_a_path_is_pulled_taut_on_its_side_of_every_island(seed: int):
 def test_a_mutant_that_lets_go_of_the_class_is_caught(monkeypatch: pytest.MonkeyPatch):
     """Pulled past islands, what differed falls together: then three ways are not found."""
 
-    def careless(space, path, rng, limits, islands):
-        return shorten(space, path, rng, limits)
+    def careless(space, path, rng, budget, islands):
+        return shorten(space, path, rng, budget)
 
     monkeypatch.setattr(module, 'shorten', careless)
     start, goal = SPACE.cell_centres(39, 3), SPACE.cell_centres(39, 56)

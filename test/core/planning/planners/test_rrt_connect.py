@@ -2,10 +2,10 @@
 
 import math
 from test.brute_force import chord_by_search
-from test.core.planning.searches import start_search
+from test.core.planning.searches import plan, start_search
 from test.laws import maps
 
-from hnr_planner.core import GridSpace, plan, PlannerStatus
+from hnr_planner.core import GridSpace, PlannerStatus
 from hnr_planner.core.kernels.streams import stream, uniform
 from hnr_planner.core.planning.planners.rrt_connect import RRTConnect
 import numpy as np
