@@ -8,7 +8,7 @@ import time
 from typing import NoReturn
 
 from hnr_planner.core.kernels.compilation import status
-from hnr_planner.core.warm_up import compile_in_background
+from hnr_planner.core.warming import compile_in_background
 from hnr_planner.ros.node.help import help_text
 from hnr_planner.ros.node.planner import PlannerNode, SERVICES, THREADS
 from hnr_planner.ros.node.process import run
