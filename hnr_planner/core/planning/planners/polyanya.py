@@ -23,6 +23,7 @@ from hnr_planner.core.lengths import distance
 from hnr_planner.core.planning.planner import Problem, with_room
 from hnr_planner.core.planning.planners.cones import (
     CORNER,
+    DISTANCE,
     expand,
     FINAL,
     Frontier,
@@ -33,7 +34,6 @@ from hnr_planner.core.planning.planners.cones import (
     open_frontier,
     PARENT,
     room_at,
-    X,
 )
 from hnr_planner.core.spaces.grid.slabs import OFF_LINE, slab_at, Slabs
 from hnr_planner.core.spaces.primitives import first_exit
@@ -112,8 +112,7 @@ class PolyanyaSearch:
     @property
     def samples(self) -> Floats:
         """Start and corners reached (k, 2)."""
-        after = X + 2
-        return self._frontier.vertices[: self._frontier.sizes[N_VERTICES], X:after]
+        return self._frontier.vertices[: self._frontier.sizes[N_VERTICES], :DISTANCE]
 
     @property
     def parents(self) -> NDArray[np.int64]:
@@ -133,7 +132,7 @@ class PolyanyaSearch:
         rows = rows_to(self.parents, int(frontier.sizes[FINAL]))
         corners = frontier.vertices[rows[1:], CORNER].astype(np.int64)
         steps = self.slabs.steps.reshape(-1, 2)[corners]
-        bends = frontier.vertices[rows[1:], X : X + 2] + problem.margin * steps
+        bends = frontier.vertices[rows[1:], :DISTANCE] + problem.margin * steps
         points = np.vstack([problem.start, bends, problem.goal])
         return step_aside(problem.space, points, problem.margin)
 
