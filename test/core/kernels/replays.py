@@ -163,15 +163,21 @@ def _plan(space: Any, start: Any, goal: Any, **options: Any) -> None:
     plan(space, start, goal, time_limit=math.inf, max_iterations=60, **options)
 
 
+#: Spaces to walk in: each costs the compilation of a walk. In the others rays are cast.
+WALKED = ('grid turned', 'polytope', 'sheared ball')
+
+
 def sample_everywhere() -> None:
     for name, build in SPACES.items():
         space: Any = build()
         point = _free_point(space)
-        for walk in WALKS if name in ('grid turned', 'polytope') else ('hit_and_run',):
-            sample(space, point, 5, walk=walk, seed=0)
-        other = sample(space, point, 1, seed=1)[0, 0]
-        space.is_motion_valid(point, other)
-        space.contains(np.array([point, other]))
+        for walk in WALKS if name == 'grid turned' else ('hit_and_run',):
+            if name in WALKED:
+                sample(space, point, 5, walk=walk, seed=0)
+        for direction in np.random.default_rng(0).normal(size=(3, space.dim)):
+            chord = space.chord(point, direction)
+            space.is_motion_valid(point, point + 0.5 * chord.upper * direction)
+        space.contains(np.array([point, point]))
 
 
 def _free_point(space: Any) -> np.ndarray:
