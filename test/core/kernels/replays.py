@@ -26,6 +26,7 @@ from hnr_planner.core.kernels.kernel import interpreted, Kernel
 from hnr_planner.core.planning.registry import ALGORITHMS
 from hnr_planner.core.systems import Car, DoubleIntegrator
 from hnr_planner.core.trajectories.registry import KINODYNAMIC_PLANNERS
+from hnr_planner.core.warm_up import draw_samples, find_motions, find_paths
 import numpy as np
 import pytest
 
@@ -186,7 +187,16 @@ def _free_point(space: Any) -> np.ndarray:
 
 
 WORKLOADS: dict[str, Callable[[], None]] = {
-    work.__name__: work for work in (plan_paths, plan_by_roadmap, plan_motions, sample_everywhere)
+    work.__name__: work
+    for work in (
+        find_paths,
+        find_motions,
+        draw_samples,
+        plan_paths,
+        plan_by_roadmap,
+        plan_motions,
+        sample_everywhere,
+    )
 }
 
 
