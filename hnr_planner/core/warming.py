@@ -31,7 +31,8 @@ from hnr_planner.core.trajectories.registry import KINODYNAMIC_PLANNERS
 from hnr_planner.core.trajectories.request import check_kinodynamic_request
 import numpy as np
 
-START, GOAL = (0.5, 0.5), (2.5, 2.5)
+#: Points on both sides of a wall, so that there is something to search for.
+START, GOAL = (0.5, 0.5), (0.5, 4.5)
 #: Transitions of each search: enough to need all that a search needs.
 N_ITERATIONS = 300
 
@@ -194,7 +195,10 @@ def draw_samples() -> None:
 
 
 def _small_grid() -> GridSpace:
-    return GridSpace.from_blocked(np.zeros((3, 3), dtype=bool))
+    """Return a room with a wall across most of it."""
+    blocked = np.zeros((5, 5), dtype=bool)
+    blocked[2, :4] = True
+    return GridSpace.from_blocked(blocked)
 
 
 def _grid_with_island() -> GridSpace:

@@ -79,6 +79,8 @@ class _Background:
         self.started = 0.0
         self.process: subprocess.Popen[bytes] | None = None
         self.messages: queue.SimpleQueue[Need | Workload | None] = queue.SimpleQueue()
+        #: Number of notices of the present child.
+        self.notices = 0
         self.is_running = False
         self.has_given_up = False
         self.is_ending = False
@@ -99,11 +101,12 @@ class _Background:
     def run(self) -> None:
         """Run children until nothing is left to ask for."""
         while True:
+            self.notices = 0
             code = self.run_child()
             with self.lock:
                 self.process = None
                 is_left = bool(self.asked or self.general or self.workloads)
-                if is_left and code == 0:  # it was just about to end for want of work
+                if is_left and code == 0 and self.notices:  # it was about to end for want of work
                     continue
                 self.worked += time.monotonic() - self.started
                 self.is_running = False
@@ -168,6 +171,7 @@ class _Background:
 
     def take(self, notice: Notice) -> None:
         """Take note of what the child says; load what it has made."""
+        self.notices += 1
         if isinstance(notice.about, list):
             with self.lock:
                 self.general |= dict.fromkeys(notice.about)
@@ -188,7 +192,11 @@ class _Background:
             _log.warning('%s stays interpreted: %s', notice.about.name, reason)
 
     def load(self, need: Need) -> bool:
-        kernel, signature = self.asked.get(need) or need.resolve()
+        """Load machine code that the child has made; return whether it is there."""
+        try:
+            kernel, signature = self.asked.get(need) or need.resolve()
+        except Exception:  # its module cannot be imported here
+            return False
         return bool(kernel.load(signature))
 
 

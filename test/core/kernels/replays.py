@@ -26,6 +26,7 @@ from hnr_planner.core.kernels.kernel import interpreted, Kernel
 from hnr_planner.core.planning.registry import ALGORITHMS
 from hnr_planner.core.systems import Car, DoubleIntegrator
 from hnr_planner.core.trajectories.registry import KINODYNAMIC_PLANNERS
+from hnr_planner.core.warm_up import draw_samples, find_motions, find_paths
 import numpy as np
 import pytest
 
@@ -163,15 +164,21 @@ def _plan(space: Any, start: Any, goal: Any, **options: Any) -> None:
     plan(space, start, goal, time_limit=math.inf, max_iterations=60, **options)
 
 
+#: Spaces to walk in: each costs the compilation of a walk. In the others rays are cast.
+WALKED = ('grid turned', 'polytope', 'sheared ball')
+
+
 def sample_everywhere() -> None:
     for name, build in SPACES.items():
         space: Any = build()
         point = _free_point(space)
-        for walk in WALKS if name in ('grid turned', 'polytope') else ('hit_and_run',):
-            sample(space, point, 5, walk=walk, seed=0)
-        other = sample(space, point, 1, seed=1)[0, 0]
-        space.is_motion_valid(point, other)
-        space.contains(np.array([point, other]))
+        for walk in WALKS if name == 'grid turned' else ('hit_and_run',):
+            if name in WALKED:
+                sample(space, point, 5, walk=walk, seed=0)
+        for direction in np.random.default_rng(0).normal(size=(3, space.dim)):
+            chord = space.chord(point, direction)
+            space.is_motion_valid(point, point + 0.5 * chord.upper * direction)
+        space.contains(np.array([point, point]))
 
 
 def _free_point(space: Any) -> np.ndarray:
@@ -180,7 +187,16 @@ def _free_point(space: Any) -> np.ndarray:
 
 
 WORKLOADS: dict[str, Callable[[], None]] = {
-    work.__name__: work for work in (plan_paths, plan_by_roadmap, plan_motions, sample_everywhere)
+    work.__name__: work
+    for work in (
+        find_paths,
+        find_motions,
+        draw_samples,
+        plan_paths,
+        plan_by_roadmap,
+        plan_motions,
+        sample_everywhere,
+    )
 }
 
 
