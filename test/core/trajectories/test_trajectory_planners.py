@@ -107,7 +107,7 @@ def test_the_size_of_batches_does_not_matter(algorithm: str, begin: Any) -> None
         settings={},
         goal_radius=0.5,
         goal_speed=np.inf,
-        boundary='forbidden',
+        boundary='inelastic' if algorithm in PAPERS else 'forbidden',
         simplify=False,
         seed=3,
     )
