@@ -8,6 +8,7 @@ from hnr_planner.core.planning.planners.hit_and_run import HitAndRun as HitAndRu
 from hnr_planner.core.planning.planners.hit_and_run_connect import (
     HitAndRunConnect as HitAndRunConnect,
 )
+from hnr_planner.core.planning.planners.polyanya import Polyanya as Polyanya
 from hnr_planner.core.planning.planners.rrt import RRT as RRT
 from hnr_planner.core.planning.planners.rrt_connect import RRTConnect as RRTConnect
 from hnr_planner.core.planning.postprocessing.simplify import simplify as simplify

@@ -75,12 +75,6 @@ PLANNERS = (
         'RRTConnect',
         'RRT-Connect: RRTs from both ends, each extended towards the new vertices of the other',
     ),
-    PlannerEntry(
-        'polyanya',
-        f'{_PLANNERS}.polyanya',
-        'Polyanya',
-        'the shortest path on a grid, exactly',
-    ),
 )
 
 #: Names that ``plan`` takes.
@@ -118,7 +112,7 @@ def make_planner(
     if algorithm not in by_name:
         raise RequestError(f'algorithm must be one of {", ".join(by_name)}, got {algorithm!r}')
     kind = by_name[algorithm].load()
-    known = [field.name for field in fields(kind) if field.repr]
+    known = [field.name for field in fields(kind)]
     for setting in settings:
         if setting not in known:
             has = ', '.join(known) or 'no settings'

@@ -4,7 +4,7 @@ import math
 from test.brute_force import path_collisions
 from test.visibility_graph import SCALE, shortest_length
 
-from hnr_planner.core import BoxSpace, GridSpace, plan, PlannerStatus, RequestError
+from hnr_planner.core import BoxSpace, GridSpace, plan, PlannerStatus, Polyanya, RequestError
 import numpy as np
 import pytest
 
@@ -15,7 +15,7 @@ MARGINS = 1e-6
 
 def exact(space, start, goal, **arguments):
     arguments = {'time_limit': math.inf, 'max_iterations': 100_000, **arguments}
-    return plan(space, start, goal, algorithm='polyanya', **arguments)
+    return plan(space, start, goal, algorithm=Polyanya(), **arguments)
 
 
 def random_map(rng: np.random.Generator) -> np.ndarray:
