@@ -26,7 +26,7 @@ from hnr_planner.core.kernels.kernel import interpreted, Kernel
 from hnr_planner.core.planning.registry import ALGORITHMS
 from hnr_planner.core.systems import Car, DoubleIntegrator
 from hnr_planner.core.trajectories.registry import KINODYNAMIC_PLANNERS
-from hnr_planner.core.warm_up import draw_samples, find_motions, find_paths
+from hnr_planner.core.warming import draw_samples, find_motions, find_paths
 import numpy as np
 import pytest
 
