@@ -27,6 +27,13 @@ def island_points(blocked_with_rim: Bools) -> NDArray[np.float64]:
     return np.stack([columns, rows], axis=1)[inside] + 0.5
 
 
+def largest_component(labels: NDArray[np.int32]) -> Bools:
+    """Return the cells (rows, cols) of the largest component; none where no cell is free."""
+    sizes = np.bincount(labels.ravel())
+    sizes[0] = 0
+    return (labels == sizes.argmax()) & (labels > 0)
+
+
 @kernel
 def nearest_in_component(labels, component, target, margin):
     """
