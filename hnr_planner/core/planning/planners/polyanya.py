@@ -21,11 +21,12 @@ from hnr_planner.core.kernels.kernel import kernel
 from hnr_planner.core.kernels.streams import Stream
 from hnr_planner.core.lengths import distance
 from hnr_planner.core.planning.planner import Problem, with_room
+from hnr_planner.core.planning.planners.cone_expansion import expand
 from hnr_planner.core.planning.planners.cones import (
     CORNER,
     DISTANCE,
-    expand,
     FINAL,
+    first_capacity,
     Frontier,
     N_NODES,
     N_OPEN,
@@ -33,7 +34,6 @@ from hnr_planner.core.planning.planners.cones import (
     NONE,
     open_frontier,
     PARENT,
-    room_at,
 )
 from hnr_planner.core.spaces.grid.slabs import OFF_LINE, slab_at, Slabs
 from hnr_planner.core.spaces.primitives import first_exit
@@ -42,8 +42,8 @@ from hnr_planner.core.trees import rows_to
 import numpy as np
 from numpy.typing import NDArray
 
-#: Nodes that there is room for at first.
-ROOM = 4096
+#: Nodes that fit in the arrays at first.
+INITIAL_CAPACITY = 4096
 #: Corners that the segments of a path may graze, for each vertex.
 GRAZED_MAX = 64
 
@@ -94,8 +94,8 @@ class PolyanyaSearch:
 
     def __post_init__(self) -> None:
         self._start, self._goal = _off_lines(self.problem.start), _off_lines(self.problem.goal)
-        room = max(ROOM, room_at(self.slabs, self._start))
-        self._frontier = open_frontier(self.slabs, self._start, self._goal, room)
+        capacity = max(INITIAL_CAPACITY, first_capacity(self.slabs, self._start))
+        self._frontier = open_frontier(self.slabs, self._start, self._goal, capacity)
 
     @property
     def solved(self) -> bool:
@@ -148,9 +148,9 @@ class PolyanyaSearch:
             exhausted = self._frontier.sizes[N_OPEN] == 0
             if self.solved or exhausted or self.iterations == end:
                 break
-            self._make_room()
+            self._grow()
 
-    def _make_room(self) -> None:
+    def _grow(self) -> None:
         frontier = self._frontier
         rows = len(frontier.nodes) + 1
         self._frontier = frontier._replace(
