@@ -20,7 +20,7 @@ from hnr_planner.core.spaces.grid.grid_space import GridSpace
 import numpy as np
 from numpy.typing import NDArray
 
-#: Steps between two checks for cancellation: some hundredths of a second.
+#: Steps between two checks for cancellation; they take some hundredths of a second.
 STEPS_AT_ONCE = 2**16
 
 

@@ -7,7 +7,7 @@ its step::
 
     take_step(walk, space, cache, u, rng, counts) -> moved
 
-The kernel either moves the chain at ``cache`` or leaves it, and returns which. It depends on its
+The kernel may move the chain at ``cache``, and returns whether it did. It depends on its
 arguments only; module ``chains`` calls it in a loop, and counts steps and moves. A further walk is
 a dataclass, a NamedTuple, a kernel registered for that NamedTuple, and a line in ``_WALKS``.
 
@@ -122,7 +122,7 @@ _WALKS: dict[str, Walk] = {
     walk.name: walk for walk in (HitAndRunWalk(), CoordinateHitAndRunWalk(), BallWalk())
 }
 
-#: Names of the walks; each name stands for the walk with its default settings.
+#: Names of the walks with their default settings.
 WALKS = tuple(_WALKS)
 
 
@@ -169,7 +169,7 @@ def take_step(walk: Any, space: Any, cache: Any, u: Any, rng: Any, counts: Any) 
     cache : ChainCache or the space's own
         Position of the chain, which the step changes.
     u : (dim,)
-        Work array for the direction. Coordinate walks need it zero, and leave it zero.
+        Work array for the direction; zero before and after steps of coordinate walks.
     rng : (4,) uint64
         Random stream of the chain.
     counts : (N_COUNTS,) int64
@@ -224,7 +224,7 @@ def _move_on_chord(zero_length, space, cache, u, axis, rng, counts):
 
 @inlined
 def _move_between(space, cache, u, axis, lower, upper, rng, counts):
-    """Move to ``x + s u``, s uniform in (lower, upper); draw again what rounds onto the ends."""
+    """Move to ``x + s u``, s uniform in (lower, upper); redraw an s rounded onto an end."""
     for _ in range(REDRAWS_MAX):
         s = lower + (upper - lower) * uniform(rng)
         if lower < s < upper and move_along(space, cache, u, axis, s):

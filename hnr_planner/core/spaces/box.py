@@ -30,7 +30,7 @@ class BoxData(NamedTuple):
     lower, upper : (k, dim)
         Corners of the boxes.
     max_gap : float
-        Longest gap between two boxes that a ray passes.
+        Longest gap between two boxes that a ray can cross.
 
     """
 
@@ -71,12 +71,12 @@ class BoxSpace(Space):
         return self.lower.copy(), self.upper.copy()
 
     def compiled_at(self, origin: Floats | None) -> BoxData:
-        """Return the compiled box in the caller's frame moved to ``origin`` (dim,); None for 0."""
+        """Return the compiled box in the caller's frame, its origin moved to ``origin`` (dim,)."""
         shift = np.zeros(self.dim) if origin is None else origin
         return BoxData((self.lower - shift)[np.newaxis], (self.upper - shift)[np.newaxis], 0.0)
 
     def covers_box(self, lower: Floats, upper: Floats) -> bool:
-        """Return whether the other box lies in this one, faces included."""
+        """Return whether the box between two corners (dim,) lies in this one, faces included."""
         return bool((self.lower <= lower).all() and (upper <= self.upper).all())
 
     def why_not_free(self, point: ArrayLike) -> str:
@@ -132,7 +132,7 @@ def _piece_span(boxes, k, x, u, closed):
 @add_crossings.register(BoxData)
 @kernel
 def _add_crossings(boxes, curve, end, crossings, n):
-    """Add where a curve meets the planes of the faces."""
+    """Add the parameters at which a curve meets the planes of the faces."""
     for k in range(len(boxes.lower)):
         for i in range(boxes.lower.shape[1]):
             f = coordinate(curve, i)

@@ -105,7 +105,7 @@ def chain_cost(space: Space, chain: Floats, n_links: float) -> float:
 
 
 def hull_of(space: Space) -> Space:
-    """Return the convex hull of a set in the plane, or its bounds where no corners are known."""
+    """Return the convex hull of a set in the plane, or its bounds where corners are unknown."""
     if isinstance(space, BallSpace | BoxSpace | PolytopeSpace):
         return space
     points = corners(space).points

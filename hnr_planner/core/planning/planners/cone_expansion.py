@@ -1,8 +1,9 @@
 """
-Expansion of cones: what the root of a search node of Polyanya sees beyond its portal.
+Expansion of the search nodes of Polyanya: the cones that continue a cone beyond its portal.
 
-The root of a node sees part of every portal on the far edge of the slab. Where a bound of the cone
-is a corner of an obstacle, the shortest path may bend there, and reach what lies beyond the bound.
+Of every portal on the far edge of the slab an interval may be visible from the node's root. Where
+a bound of the cone is a corner of an obstacle, the shortest path may also bend there and reach
+points beyond the bound.
 """
 
 import math
@@ -73,7 +74,7 @@ def expand(slabs, frontier, goal, goal_slab, n_iterations):
 
 @kernel
 def _expand_ahead(slabs, frontier, goal, row, first, last):
-    """Add the nodes that the root of node ``row`` sees on the far edge of the slab."""
+    """Add nodes for the portals ``first`` to ``last`` - 1 visible from the root of ``row``."""
     nodes, vertices = frontier.nodes, frontier.vertices
     up, root = int(nodes[row, UP]), int(nodes[row, ROOT])
     x, y = vertices[root, X], vertices[root, Y]
@@ -99,7 +100,7 @@ def _expand_ahead(slabs, frontier, goal, row, first, last):
 
 @kernel
 def _expand_around(slabs, frontier, goal, row, side, slab, holds_goal):
-    """Add what lies beyond a bend at the corner on one side of node ``row``."""
+    """Add the nodes, or the goal, beyond a bend at the corner on one side of node ``row``."""
     nodes, vertices = frontier.nodes, frontier.vertices
     up, root, portal = int(nodes[row, UP]), int(nodes[row, ROOT]), int(nodes[row, PORTAL])
     x, y = vertices[root, X], vertices[root, Y]
@@ -143,7 +144,7 @@ def _expand_around(slabs, frontier, goal, row, side, slab, holds_goal):
 
 @kernel
 def _reach_goal(slabs, frontier, goal, row):
-    """Open the goal in the slab that node ``row`` leads into, where its root sees it."""
+    """Push the goal on the heap where it is visible from the root of node ``row``."""
     nodes, vertices = frontier.nodes, frontier.vertices
     up, root = int(nodes[row, UP]), int(nodes[row, ROOT])
     x, y = vertices[root, X], vertices[root, Y]
@@ -156,7 +157,7 @@ def _reach_goal(slabs, frontier, goal, row):
 
 @kernel
 def _reach_corner(frontier, root, x, y, corner):
-    """Add the vertex at a corner reached from ``root``; NONE where a shorter way is known."""
+    """Add the vertex at a corner reached from ``root``; NONE where a shorter path was found."""
     vertices = frontier.vertices
     distance = vertices[root, DISTANCE] + math.hypot(x - vertices[root, X], y - vertices[root, Y])
     if distance >= NEARER * frontier.nearest[corner]:

@@ -1,13 +1,13 @@
 """
 Cones: the search nodes of Polyanya on slabs, and the heap of those that are open.
 
-A node is a root, the last corner at which the path bends, and the part of a portal that the root
-sees: the cone between two bounds, through that portal into the next slab. Corners and the ends of
-portals are whole numbers, and a cone is kept by the points that bound it, so whether a corner lies
-in a cone is the sign of an exact product.
+A node is a root, the last corner at which the path bends, and the interval of a portal that is
+visible from the root: the cone between two bounds, through that portal into the next slab. Corners
+and the ends of portals have integer coordinates, and a cone is stored as the points that bound it,
+so whether a corner lies in a cone is the sign of an exact product.
 
-Cones are closed, so that a path may touch corners on both sides; left and right are those of the
-grid, whichever way a cone opens.
+Cones are closed, so that a path may touch corners on both sides. Left and right are those of the
+grid, also for cones that open downwards.
 """
 
 import math
@@ -45,7 +45,7 @@ class Frontier(NamedTuple):
     nearest : (2 n_portals,)
         Least distance at which each corner has been reached.
     is_open : (n_slabs,) bool
-        Slabs that a way may lead through: all but dead ends that hold neither start nor goal.
+        Slabs that a path may pass: all but dead ends that hold neither start nor goal.
     sizes : (4,) int64
         Rows in use, and the vertex from which the goal was reached.
 
@@ -62,7 +62,7 @@ class Frontier(NamedTuple):
 
 @kernel
 def open_frontier(slabs, start, goal, capacity):
-    """Return the state of a search from ``start`` to ``goal`` (2,), free and off grid lines."""
+    """Return the state of a search between free points (2,) off grid lines."""
     frontier = Frontier(
         np.empty((capacity, 7)),
         np.empty((capacity, 5)),
@@ -90,7 +90,7 @@ def open_frontier(slabs, start, goal, capacity):
 
 @kernel
 def first_capacity(slabs, start):
-    """Return how many rows the first nodes of a search from a point need."""
+    """Return how many rows the first nodes of a search from a point (2,) need."""
     slab = slab_at(slabs, start[0], start[1])
     above = slabs.above[slab, 1] - slabs.above[slab, 0]
     return above + slabs.below[slab, 1] - slabs.below[slab, 0] + 2
@@ -98,7 +98,7 @@ def first_capacity(slabs, start):
 
 @kernel
 def _open_exits(slabs, frontier, slab):
-    """Open the slabs that lead out of the dead end that holds ``slab``."""
+    """Mark as open the slabs from ``slab`` to the exit of its dead end."""
     while not frontier.is_open[slab]:
         frontier.is_open[slab] = True
         slab = slabs.exits[slab]
@@ -106,7 +106,7 @@ def _open_exits(slabs, frontier, slab):
 
 @kernel
 def is_over(frontier):
-    """Return whether no node is left to expand; note the goal where it comes first."""
+    """Return whether the search has ended; store the goal's vertex once it comes first."""
     sizes = frontier.sizes
     if sizes[N_OPEN] > 0 and frontier.heap[0] <= NONE:
         sizes[FINAL] = NONE - frontier.heap[0]
@@ -126,7 +126,7 @@ def add_vertex(frontier, x, y, distance, parent, corner):
 
 @kernel
 def add_node(slabs, frontier, goal, root, lx, ly, rx, ry, portal, up):
-    """Open the node of a root and the cone between two bounds through a portal."""
+    """Add the node of a root and the cone between two bounds (x, y) through a portal."""
     if not frontier.is_open[slabs.portals[portal, 4] if up == 1 else slabs.portals[portal, 3]]:
         return
     row = frontier.sizes[N_NODES]
@@ -147,13 +147,13 @@ def add_node(slabs, frontier, goal, root, lx, ly, rx, ry, portal, up):
 
 @kernel
 def _crossing(x, y, bx, by, line):
-    """Return where the ray from ``(x, y)`` through a bound meets a horizontal line."""
+    """Return the x at which the ray from ``(x, y)`` through a bound meets a horizontal line."""
     return float(bx) if by == line else x + (bx - x) * (line - y) / (by - y)
 
 
 @kernel
 def push(frontier, estimate, row):
-    """Put a row on the heap."""
+    """Insert a row in the heap of open nodes, ordered by ``estimate``."""
     estimates, heap = frontier.estimates, frontier.heap
     k = frontier.sizes[N_OPEN]
     frontier.sizes[N_OPEN] += 1
@@ -165,7 +165,7 @@ def push(frontier, estimate, row):
 
 @kernel
 def pop(frontier):
-    """Take the row of the least estimate off the heap."""
+    """Remove the row of the least estimate from the heap."""
     estimates, heap, sizes = frontier.estimates, frontier.heap, frontier.sizes
     sizes[N_OPEN] -= 1
     n = sizes[N_OPEN]

@@ -1,5 +1,5 @@
 """
-Holding times: how long chains stay on one point.
+Holding times: numbers of consecutive draws of a chain on one point.
 
 A walk repeats its point where the chord contains no other number (a zero chord), and where it
 rejects a move. Long holding times are the sign of a stuck chain in draws alone.

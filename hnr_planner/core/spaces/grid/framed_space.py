@@ -63,11 +63,11 @@ class FramedSpace(Space):
 
     @cached_property
     def margin(self) -> float:
-        """Distance before a chord's end at which one stops [cells]; above what rounding moves."""
+        """Distance before a chord's end at which a motion stops, at least 8 roundings [cells]."""
         return max(super().margin, 8.0 * self.frame.rounding)
 
     def compiled_at(self, origin: Floats | None) -> TransformedData:
-        """Return the compiled space in the map frame moved to ``origin`` (2,); None for 0."""
+        """Return the compiled space in the map frame, its origin moved to ``origin`` (2,)."""
         matrix, offset = self.frame.to_cells
         if origin is not None:
             offset = self.frame.to_kernel(origin)

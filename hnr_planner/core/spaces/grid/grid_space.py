@@ -79,18 +79,18 @@ class GridSpace(FramedSpace):
         data : (rows, cols) integers
             Occupancy: 0..100, -1 for unknown; values outside -1..100 count as unknown.
         resolution : float
-            Side of a cell [m]. A number of single precision, as a message carries it, is taken as
-            the decimal that it stands for.
+            Side of a cell [m]. A number of single precision, as in a message, is replaced by its
+            decimal: .05 for .05000000074505806.
         origin : (x, y, yaw)
             Pose of the outer corner of cell [0, 0] in the map frame [m, m, rad].
         robot_radius : float
             A cell is blocked when its centre is within this distance [m] of the centre of an
             occupied cell. Unknown cells and the map's edge block, but are not inflated.
         occupied_threshold : int
-            Cells of at least this value, 1..100, are occupied. For a costmap of Nav2 it is 99:
-            then cells of 99 are known to be inflation, and those of 100 to be obstacles.
+            Cells of at least this value, 1..100, are occupied. 99 is for a costmap of Nav2: there
+            cells of 99 are inflation, and cells of 100 are obstacles.
         unknown : 'blocked' or 'free'
-            Whether unknown cells block or are free.
+            Whether unknown cells are blocked or free.
 
         Raises
         ------
@@ -145,7 +145,7 @@ class GridSpace(FramedSpace):
         origin: Iterable[float],
         radius: float,
     ) -> 'GridSpace':
-        """Check what all constructors take, inflate the occupied cells and label components."""
+        """Check the arguments, inflate the occupied cells, label the components."""
         frame = GridFrame.checked(resolution, origin, occupied.shape)
         radius = decimal(check_real('robot_radius', radius, SpaceError))
         if not 0.0 <= radius < np.inf:
@@ -171,7 +171,7 @@ class GridSpace(FramedSpace):
 
     @property
     def occupied(self) -> Bools:
-        """Cells (rows, cols) that the map says are occupied, before inflation."""
+        """Cells (rows, cols) that are occupied in the map, before inflation."""
         return self._obstacles.occupied
 
     def is_obstacle(self, row: int, column: int) -> bool:
@@ -189,7 +189,7 @@ class GridSpace(FramedSpace):
         return bool(0.0 <= x <= columns and 0.0 <= y <= rows)
 
     def why_not_free(self, point: ArrayLike) -> str:
-        """Return in words why ``point`` (2,) [m] is not free."""
+        """Return the reason why ``point`` (2,) [m] is not free."""
         x, y = self.to_cells(check_point('point', point, 2))
         rows, columns = self.shape
         if not (0 < x < columns and 0 < y < rows):
@@ -261,7 +261,7 @@ class GridSpace(FramedSpace):
 
     @cached_property
     def island_points(self) -> Floats:
-        """A point (k, 2) in each blocked component that a path can go round, kernel frame."""
+        """A point (k, 2) in each blocked component with free cells all around, kernel frame."""
         return island_points(self.data.free_distance == 0)
 
     def _component(self, point: Floats) -> int:
@@ -281,7 +281,7 @@ class GridSpace(FramedSpace):
         return point_clearance(self._obstacles.distance, cells) * self.scale
 
     def path_clearance(self, path: ArrayLike) -> float:
-        """Return the least clearance [m] along the whole of a path (m, 2); inf without walls."""
+        """Return the least distance [m] from a path (m, 2) to occupied squares; inf for none."""
         points = check_points('path', path, 2)
         if points.ndim != 2 or len(points) == 0 or not np.isfinite(points).all():
             raise RequestError(f'path must be at least one finite point (m, 2), got {path!r}')

@@ -3,8 +3,8 @@ A coarse lattice over a grid: rough, free paths that take the short route around
 
 The grid is divided into square blocks. A node is the cell of its block that is farthest from the
 walls; the nodes of neighbouring blocks are joined where the segment between them is free. A path
-on the lattice is free and nearly always of the shortest homotopy class, but longer than need be:
-it has to be shortened.
+on the lattice is free and nearly always of the shortest homotopy class, but it is not taut: it has
+to be shortened.
 """
 
 from heapq import heappop, heappush

@@ -7,8 +7,8 @@ from hnr_planner.core.spaces.grid.fields import inflate
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-#: Value of the cells of a Nav2 costmap that inflation blocks; those of obstacles have 100. A
-#: caller who takes cells from this value on as occupied has such a costmap.
+#: Value of the cells of a Nav2 costmap that inflation blocks; obstacles have 100. A map with this
+#: threshold of occupied cells is taken for such a costmap.
 COSTMAP_INFLATED = 99
 
 
@@ -40,7 +40,7 @@ class Obstacles:
 
     @property
     def occupied(self) -> Bools:
-        """Cells (rows, cols) that the map says are occupied, before inflation."""
+        """Cells (rows, cols) that are occupied in the map, before inflation."""
         return self.distance[1:-1, 1:-1] == 0
 
     def is_obstacle(self, row: int, column: int) -> bool:
@@ -65,7 +65,7 @@ class Obstacles:
         return inflated
 
     def why_blocked(self, row: int, column: int, robot_radius: float) -> str:
-        """Return in words why a blocked cell is blocked, for a robot of a radius [m]."""
+        """Return the reason why a blocked cell is blocked, for a robot of ``robot_radius`` [m]."""
         cell = f'cell [{row}, {column}]'
         if self.is_obstacle(row, column):
             return f'inside an obstacle: {cell} is occupied'

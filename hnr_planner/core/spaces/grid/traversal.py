@@ -8,8 +8,8 @@ rim of the array is blocked, so a ray always ends.
 
 The line ``x + s u`` meets the grid line ``X`` at ``s = (X - x) / u``, whichever cells were visited
 before. A skip ends at a point that traversal cell by cell passes too, so both stop at the same
-number to the last bit. Blocked cells are closed: a ray through a corner needs all four cells free,
-and one along a grid line the cells on both sides.
+number to the last bit. Blocked cells are closed: a ray through a corner needs all four cells to be
+free, and one along a grid line the cells on both sides.
 """
 
 import math
@@ -27,7 +27,7 @@ from hnr_planner.core.spaces.primitives import (
 import numpy as np
 from numpy.typing import NDArray
 
-#: Least number of free cells around from which skipping pays (measured on maps of buildings).
+#: Least distance to a blocked cell [cells] for which a skip is faster (measured on building maps).
 LEAST_REACH = 2
 #: Distance from the last free cell's side at which a skip ends, more than rounding [cells].
 SKIN = 1e-6
