@@ -114,7 +114,7 @@ class Request:
     space : Space
         Where the path has to be free.
     start, goal : (dim,)
-        Caller's frame.
+        Points in the caller's frame [m].
     goal_radius : float
         Radius of the goal region, caller's units; 0 for an exact goal.
     planner : Planner

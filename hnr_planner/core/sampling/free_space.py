@@ -135,7 +135,11 @@ def sample_free_space(
 
 
 def pick_cells(free: NDArray[np.intp], n_draws: int, rng: np.random.Generator) -> NDArray[np.intp]:
-    """Pick a uniform cell of ``free`` for each draw: its component, and where that starts."""
+    """
+    Return a uniform cell of ``free`` (k,) for each draw: (n_draws,).
+
+    It determines the component of the draw, and the first one in a component also its start.
+    """
     return free[(rng.random(n_draws) * len(free)).astype(np.intp)]
 
 

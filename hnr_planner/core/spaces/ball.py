@@ -76,7 +76,7 @@ class BallSpace(Space):
 
     @property
     def bounds(self) -> tuple[Floats, Floats]:
-        """Lower and upper corner (dim,)."""
+        """Lower and upper corner (dim,), caller's frame."""
         return self.centre - self.radius, self.centre + self.radius
 
     @property
@@ -95,7 +95,7 @@ class BallSpace(Space):
         return bool(np.linalg.norm(farthest) <= self.radius)
 
     def why_not_free(self, point: ArrayLike) -> str:
-        """Return in words why ``point`` (dim,) is not free."""
+        """Return the reason why ``point`` (dim,) is not free."""
         distance = np.linalg.norm(check_point('point', point, self.dim) - self.centre)
         return f'{distance:g} away from the centre of a ball of radius {self.radius:g}'
 
@@ -125,7 +125,7 @@ def _piece_contains(balls, k, x, closed):
 @piece_span.register(BallData)
 @inlined
 def _piece_span(balls, k, x, u, closed):
-    """Solve a s^2 + 2 b s + c = 0, where c has the sign that ``_piece_contains`` finds."""
+    """Return the interval of the line in ball ``k``: between the roots of a s^2 + 2 b s + c."""
     a, b, squared = 0.0, 0.0, 0.0
     for i in range(len(x)):
         offset = x[i] - balls.centres[k, i]
@@ -148,7 +148,7 @@ def _piece_span(balls, k, x, u, closed):
 @add_crossings.register(BallData)
 @kernel
 def _add_crossings(balls, curve, end, crossings, n):
-    """Add the parameters at which a curve meets the spheres."""
+    """Append the parameters where a curve meets the spheres; return their number."""
     for k in range(len(balls.radii)):
         n = add_sphere_crossings(curve, balls.centres[k], balls.radii[k], end, crossings, n)
     return n

@@ -52,7 +52,7 @@ def kernel_origin(lower: Floats, upper: Floats) -> Floats | None:
 
 
 def in_words(vector: Floats) -> str:
-    """Return a vector (dim,) for a repr: short numbers, and the first and last two of many."""
+    """Format a vector (dim,) for a repr: short numbers, of many the first and last two."""
     return np.array2string(
         vector, separator=', ', threshold=6, edgeitems=2, formatter={'float_kind': '{:g}'.format}
     )

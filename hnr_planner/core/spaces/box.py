@@ -67,7 +67,7 @@ class BoxSpace(Space):
 
     @property
     def bounds(self) -> tuple[Floats, Floats]:
-        """Lower and upper corner (dim,)."""
+        """Lower and upper corner (dim,), caller's frame."""
         return self.lower.copy(), self.upper.copy()
 
     def compiled_at(self, origin: Floats | None) -> BoxData:
@@ -80,7 +80,7 @@ class BoxSpace(Space):
         return bool((self.lower <= lower).all() and (upper <= self.upper).all())
 
     def why_not_free(self, point: ArrayLike) -> str:
-        """Return in words why ``point`` (dim,) is not free."""
+        """Return the reason why ``point`` (dim,) is not free."""
         x = check_point('point', point, self.dim)
         i = int(np.argmax(np.maximum(self.lower - x, x - self.upper)))
         return (
@@ -132,7 +132,7 @@ def _piece_span(boxes, k, x, u, closed):
 @add_crossings.register(BoxData)
 @kernel
 def _add_crossings(boxes, curve, end, crossings, n):
-    """Add the parameters at which a curve meets the planes of the faces."""
+    """Append the parameters where a curve meets planes of faces; return their number."""
     for k in range(len(boxes.lower)):
         for i in range(boxes.lower.shape[1]):
             f = coordinate(curve, i)

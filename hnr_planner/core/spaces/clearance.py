@@ -5,7 +5,7 @@ Squares are searched in rings of cells around the middle of a short piece of the
 field gives the first ring with an occupied cell; the search ends with the ring beyond which no
 square can be nearer to the piece than the nearest found so far.
 
-Kernel frame: ``wall_distance`` (rows, cols) is the distance in king's moves to the nearest
+Kernel frame: ``wall_distance`` (rows, cols) is the Chebyshev distance [cells] to the nearest
 occupied cell, and lengths are in cells.
 """
 

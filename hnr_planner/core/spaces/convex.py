@@ -139,7 +139,7 @@ def _chord(space, x, u, back):
 
 @kernel
 def _gap(space, x, u, back):
-    """Return the nearest pieces on the line, behind and ahead of ``x``."""
+    """Return the interval (lower, upper) of the line around ``x`` that touches no piece."""
     lower, upper = -math.inf, math.inf
     for k in range(count_pieces(space)):
         first, last = piece_span(space, k, x, u, True)

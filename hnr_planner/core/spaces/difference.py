@@ -102,7 +102,7 @@ class DifferenceSpace(Space):
         return of_base / (1.0 + len(self.removed)) ** (1.0 / self.dim)
 
     def why_not_free(self, point: ArrayLike) -> str:
-        """Return in words why ``point`` (dim,) is not free."""
+        """Return the reason why ``point`` (dim,) is not free."""
         x = check_point('point', point, self.dim)
         if not self.base.contains(x):
             return self.base.why_not_free(x)
@@ -169,7 +169,7 @@ def _component(difference, x):
 @add_crossings.register(DifferenceData)
 @kernel
 def _add_crossings(difference, curve, end, crossings, n):
-    """Add the parameters at which a curve meets a surface of the base or of a removed space."""
+    """Append the parameters where a curve meets any surface of both; return their number."""
     n = add_crossings(difference.base, curve, end, crossings, n)
     return add_crossings(difference.removed, curve, end, crossings, n)
 

@@ -81,8 +81,8 @@ class OracleSpace(Space):
         lower, upper : (dim,)
             Corners of a box: nothing outside is free.
         resolution : float
-            Walks and planners do not search. This is the distance between points that are tested
-            where a line comes in from outside: in a space that is taken away from another.
+            Distance between points that are tested where a line enters from outside, which only
+            happens when this space is removed from another. Chords need no search.
 
         """
         space = cls.__new__(cls)
@@ -129,7 +129,7 @@ class OracleSpace(Space):
 
     @property
     def bounds(self) -> tuple[Floats, Floats]:
-        """Lower and upper corner (dim,)."""
+        """Lower and upper corner (dim,), caller's frame."""
         return self._compiled.data.lower.copy(), self._compiled.data.upper.copy()
 
     def compiled_at(self, origin: Floats | None) -> OracleData:
@@ -142,7 +142,7 @@ class OracleSpace(Space):
         )
 
     def why_not_free(self, point: ArrayLike) -> str:
-        """Return in words why ``point`` (dim,) is not free."""
+        """Return the reason why ``point`` (dim,) is not free."""
         return 'outside the bounds, or the function says that it is not free'
 
 

@@ -92,7 +92,7 @@ class ProductSpace(Space):
 
     @property
     def bounds(self) -> tuple[Floats, Floats]:
-        """Lower and upper corner (dim,)."""
+        """Lower and upper corner (dim,), caller's frame."""
         lower, upper = zip(*(factor.bounds for factor in self.factors), strict=True)
         return np.concatenate(lower), np.concatenate(upper)
 
@@ -109,7 +109,7 @@ class ProductSpace(Space):
         )
 
     def why_not_free(self, point: ArrayLike) -> str:
-        """Return in words why ``point`` (dim,) is not free."""
+        """Return the reason why ``point`` (dim,) is not free."""
         x = check_point('point', point, self.dim)
         for k, (factor, own) in enumerate(zip(self.factors, self._slices, strict=True)):
             if not factor.contains(x[own]):

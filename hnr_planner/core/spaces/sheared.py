@@ -129,7 +129,7 @@ class ShearedSpace(Space):
 
     @property
     def bounds(self) -> tuple[Floats, Floats]:
-        """Lower and upper corner (dim,)."""
+        """Lower and upper corner (dim,), caller's frame."""
         return self._lower.copy(), self._upper.copy()
 
     @property
@@ -146,7 +146,7 @@ class ShearedSpace(Space):
         return self._moved(points, -self.bend)
 
     def why_not_free(self, point: ArrayLike) -> str:
-        """Return in words why ``point`` (dim,) is not free."""
+        """Return the reason why ``point`` (dim,) is not free."""
         reason = self.base.why_not_free(self.preimage(check_point('point', point, self.dim)))
         return f'mapped back, {reason}'
 

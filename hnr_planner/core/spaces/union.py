@@ -85,7 +85,7 @@ class UnionSpace(Space):
 
     @property
     def bounds(self) -> tuple[Floats, Floats]:
-        """Lower and upper corner (dim,)."""
+        """Lower and upper corner (dim,), caller's frame."""
         lower, upper = zip(*(member.bounds for member in self.members), strict=True)
         return np.min(lower, axis=0), np.max(upper, axis=0)
 
@@ -111,7 +111,7 @@ class UnionSpace(Space):
         return any(member.covers_box(lower, upper) for member in self.members)
 
     def why_not_free(self, point: ArrayLike) -> str:
-        """Return in words why ``point`` (dim,) is not free."""
+        """Return the reason why ``point`` (dim,) is not free."""
         reasons = '; '.join(member.why_not_free(point) for member in self.members)
         return f'in none of the {len(self.members)} members of the union: {reasons}'
 
@@ -173,7 +173,7 @@ def _first_entry(union, x, u, t):
 @add_crossings.register(UnionData)
 @kernel
 def _add_crossings(union, curve, end, crossings, n):
-    """Add the parameters at which a curve meets a surface of either."""
+    """Append the parameters where a curve meets a surface of either; return their number."""
     n = add_crossings(union.one, curve, end, crossings, n)
     return add_crossings(union.other, curve, end, crossings, n)
 

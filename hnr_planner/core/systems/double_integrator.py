@@ -125,7 +125,7 @@ class DoubleIntegrator(System):
 
 @kernel
 def _lengths(states, controls, durations):
-    """Return the integrals (k,) of the speed over the durations (k,) of steps."""
+    """Return the integrals (k,) of the speed over the durations (k,) [s] of steps."""
     dim, lengths = controls.shape[1], np.empty(len(durations))
     for k in range(len(durations)):
         total = 0.0

@@ -36,7 +36,7 @@ class ClassGraph(NamedTuple):
     first : (n + 1,) int64
         Index where each node's neighbours begin.
     neighbours : (edges,) int64
-        The neighbours of all nodes.
+        The neighbours of all nodes, node by node.
 
     """
 

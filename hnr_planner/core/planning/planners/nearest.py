@@ -31,7 +31,7 @@ class BoxTree(NamedTuple):
     lower, upper : (dim,)
         The box of the roots, the first nodes.
     child : (nodes, 2) int32
-        Lower and upper half; NONE in a leaf.
+        Nodes of the lower and the upper half; NONE in a leaf.
     split : (nodes,)
         Coordinate at which the node is halved.
     first : (nodes,) int32

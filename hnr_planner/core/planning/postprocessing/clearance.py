@@ -94,7 +94,7 @@ def increase_clearance(
 def _move_all(
     space: Space, islands: Islands, cost: ClearanceCost, points: Floats, budget: Budget
 ) -> None:
-    """Move the vertices, in passes, until no step lowers the cost."""
+    """Move the vertices of ``points`` (m, 2), in place, until no step lowers the cost."""
     steps, costs = np.full(len(points), cost.coarsest), segment_costs(cost, points)
     for _ in range(PASSES):
         if budget.stop() is not None or not move(space.data, islands, cost, points, costs, steps):

@@ -170,7 +170,11 @@ def _known_visibility(
     rows: NDArray[np.int64],
     columns: NDArray[np.int64],
 ) -> Visibility:
-    """Return the earlier visibility of new rows and columns; UNKNOWN where there is none."""
+    """
+    Return the visibility (k, n) that pairs had before a change; UNKNOWN where they had none.
+
+    ``rows`` (k,) and ``columns`` (n,) are the old indices of the pairs' points, or NONE.
+    """
     known = np.full((len(rows), len(columns)), UNKNOWN, dtype=np.uint8)
     old_rows, old_columns = np.flatnonzero(rows != NONE), np.flatnonzero(columns != NONE)
     known[np.ix_(old_rows, old_columns)] = visibility[np.ix_(rows[old_rows], columns[old_columns])]

@@ -148,6 +148,7 @@ class SolvedSearch:
     Attributes
     ----------
     path : (m, dim)
+        Path from start to goal, kernel frame.
     taut : bool
         Whether the path is taut already, so that shortening gains nothing.
 

@@ -107,7 +107,7 @@ class Winding(NamedTuple):
 @coordinate.register(Parabola)
 @kernel
 def _parabola_coordinate(curve, i):
-    """Return coordinate ``i`` of a parabola."""
+    """Return coordinate ``i`` of a parabola, as a quadratic function of its parameter."""
     return Quadratic(curve.position[i], curve.velocity[i], curve.acceleration[i])
 
 
@@ -178,7 +178,7 @@ def _winding_at(f, s):
 @turn.register(Winding)
 @kernel
 def _winding_turn(f, s):
-    """Return the next parameter after ``s`` at which the coordinate's slope is 0."""
+    """Return the next parameter after ``s`` at which the slope of an arc's coordinate is 0."""
     if f.curvature == 0.0:
         return math.inf
     turns = (f.angle + f.curvature * s) / math.pi - 0.5

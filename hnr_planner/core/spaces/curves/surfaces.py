@@ -83,7 +83,7 @@ def _is_in_gap(curve, before, end, middle, max_gap):
 
 @kernel
 def add_level_crossings(f, level, end, crossings, n):
-    """Add the parameters in [0, ``end``] at which a coordinate ``f`` has the value ``level``."""
+    """Append the parameters in [0, ``end``] where ``f`` is ``level``; return their number."""
     t = 0.0
     while t < end:
         piece_end = min(end, turn(f, t))
@@ -101,14 +101,14 @@ def add_level_crossings(f, level, end, crossings, n):
 def add_sphere_crossings(
     curve: Any, centre: Floats, radius: float, end: float, crossings: Floats, n: int
 ) -> int:
-    """Add the parameters in [0, ``end``] at which a curve meets a sphere."""
+    """Append the parameters in [0, ``end``] where a curve meets a sphere; return their number."""
     raise NotImplementedError
 
 
 @add_sphere_crossings.register(Parabola)
 @kernel
 def _add_sphere_crossings_of_parabola(curve, centre, radius, end, crossings, n):
-    """Find the sign changes of |x + v t + a t^2 / 2 - c|^2 - r^2, of order four."""
+    """Append the sign changes of the quartic |x + v t + a t^2 / 2 - c|^2 - r^2."""
     c = np.zeros(5)
     c[0] = -radius * radius
     for i in range(len(centre)):
@@ -131,7 +131,7 @@ def _add_sphere_crossings_of_parabola(curve, centre, radius, end, crossings, n):
 @kernel
 def _add_sphere_crossings_of_arc(curve, centre, radius, end, crossings, n):
     """
-    Intersect the arc with the line on which its circle meets the sphere.
+    Append the intersections of the arc with the line on which its circle meets the sphere.
 
     With m the centre of that circle and R its radius, |x - c|^2 = R^2 + |m - c|^2 + 2 (x - m)
     (m - c): constant along lines across m - c.

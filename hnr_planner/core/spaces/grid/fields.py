@@ -32,7 +32,7 @@ def inflate(occupied: Bools, radius: float) -> Bools:
 
 def free_distance(blocked: Bools, *, closed_rim: bool = True) -> NDArray[np.uint8]:
     """
-    Return the distance in king's moves from each cell to the nearest blocked one, at most 255.
+    Return the Chebyshev distance [cells] from each cell to the nearest blocked one, at most 255.
 
     Parameters
     ----------

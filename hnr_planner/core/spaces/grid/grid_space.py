@@ -272,7 +272,7 @@ class GridSpace(FramedSpace):
 
     @property
     def walls(self) -> NDArray[np.uint8]:
-        """Distance (rows, columns) in king's moves to the nearest occupied cell, kernel frame."""
+        """Chebyshev distance [cells] of each cell to the nearest occupied one, with a rim."""
         return self._obstacles.distance
 
     def clearance(self, points: ArrayLike) -> Floats:
@@ -290,7 +290,7 @@ class GridSpace(FramedSpace):
 
     @cached_property
     def typical_clearance(self) -> float:
-        """Mean distance in king's moves from a free cell to a blocked one, over a sample."""
+        """Mean Chebyshev distance [cells] from a free cell to a blocked one, over a sample."""
         stride = max(1, int(np.sqrt(self.data.labels.size / TYPICAL_CELLS)))
         distance = self.data.free_distance[::stride, ::stride]
         free = distance[distance > 0]

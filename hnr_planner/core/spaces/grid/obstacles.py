@@ -25,7 +25,7 @@ class Obstacles:
     Attributes
     ----------
     distance : (rows + 2, cols + 2) uint8
-        Distance in king's moves from each cell to the nearest occupied one, at most 255, with a
+        Chebyshev distance [cells] from each cell to the nearest occupied one, at most 255, with a
         rim of one cell that is not occupied.
     radius : float
         Radius of the inflation of occupied cells [cells].

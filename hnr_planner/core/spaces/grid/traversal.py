@@ -2,7 +2,7 @@
 The chord on a grid: exact cell traversal, with a distance field to skip empty space.
 
 Kernel frame: one unit is one cell, cell (row, column) is the square [column, column + 1] x
-[row, row + 1], x before y. ``free_distance[row, column]`` is the distance in king's moves to the
+[row, row + 1], x before y. ``free_distance[row, column]`` is the Chebyshev distance [cells] to the
 nearest blocked cell: 0 for blocked cells, and with ``d`` all cells within ``d - 1`` are free. The
 rim of the array is blocked, so a ray always ends.
 
@@ -40,7 +40,7 @@ class GridData(NamedTuple):
     Attributes
     ----------
     free_distance : (rows, columns) uint8
-        Distance in king's moves to the nearest blocked cell; 0 on the rim.
+        Chebyshev distance [cells] to the nearest blocked cell; 0 on the rim.
     labels : (rows, columns) int32
         Component that each free cell belongs to, from 1; 0 for blocked cells.
 

@@ -117,7 +117,7 @@ def _why_no_ball(found: Any, normals: Floats, rows: NDArray[np.intp]) -> SpaceEr
 
 
 def _listed(rows: NDArray[np.intp]) -> str:
-    """Return the first of some row numbers in words."""
+    """Format row numbers for a message: at most ``LISTED`` of them."""
     more = '' if len(rows) <= LISTED else f' and {len(rows) - LISTED} more'
     return ', '.join(map(str, rows[:LISTED])) + more
 

@@ -182,7 +182,7 @@ def _rate(polytope, k, u):
 @add_crossings.register(PolytopeData)
 @kernel
 def _add_crossings(polytope, curve, end, crossings, n):
-    """Add the parameters at which a curve meets the planes."""
+    """Append the parameters where a curve meets the planes; return their number."""
     for k in range(len(polytope.offsets)):
         f = along(curve, polytope.normals[k])
         n = add_level_crossings(f, polytope.offsets[k], end, crossings, n)

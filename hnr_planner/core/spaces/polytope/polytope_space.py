@@ -81,7 +81,7 @@ class PolytopeSpace(Space):
 
     @property
     def bounds(self) -> tuple[Floats, Floats]:
-        """Lower and upper corner (dim,)."""
+        """Lower and upper corner (dim,), caller's frame."""
         lower, upper = self.kernel_bounds
         return self.from_kernel(lower), self.from_kernel(upper)
 
@@ -102,7 +102,7 @@ class PolytopeSpace(Space):
         return bool(((normals * worst).sum(axis=1) <= offsets).all())
 
     def why_not_free(self, point: ArrayLike) -> str:
-        """Return in words why ``point`` (dim,) is not free."""
+        """Return the reason why ``point`` (dim,) is not free."""
         x = self.to_kernel(check_point('point', point, self.dim))
         excess = self.data.normals @ x - self.data.offsets
         k = int(np.argmax(excess))
