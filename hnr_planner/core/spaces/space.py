@@ -189,7 +189,7 @@ class Space(ABC):
 
     @property
     def walls(self) -> NDArray[Any] | None:
-        """Distance field from which kernels compute clearances; None for a space without."""
+        """Distance field (rows, cols) for kernels that compute clearances; None without one."""
         return None
 
     @property

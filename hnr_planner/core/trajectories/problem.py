@@ -47,7 +47,7 @@ class KinodynamicProblem(NamedTuple):
 
 
 class Motion(NamedTuple):
-    """Durations (m - 1,) and controls (m - 1, control_dim) of steps; states (m, state_dim)."""
+    """Durations (m - 1,) [s] and controls (m - 1, control_dim) of steps; states (m, state_dim)."""
 
     durations: Floats
     states: Floats

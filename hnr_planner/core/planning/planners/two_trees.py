@@ -41,7 +41,7 @@ class TreePair(NamedTuple):
 
 @kernel
 def empty_trees(rows, dim):
-    """Return trees without vertices, with a capacity of ``rows`` vertices (dim,) of both."""
+    """Return two trees without vertices, with a common capacity of ``rows`` vertices (dim,)."""
     vertices, parents = np.empty((rows, dim)), np.empty(rows, dtype=np.int64)
     return TreePair(vertices, parents, np.zeros(2, dtype=np.int64))
 
