@@ -114,7 +114,7 @@ def _contains(oracle, x):
 @first_exit.register(OracleData)
 @kernel
 def _first_exit(oracle, x, u, t, horizon):
-    """Call the chord function where there is one; else search the line."""
+    """Return the exit of the line from the chord function, or else by search."""
     work = np.empty(len(x) + 1)
     if not _is_in(oracle, x, u, t, work):
         return t

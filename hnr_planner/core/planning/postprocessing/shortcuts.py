@@ -147,7 +147,7 @@ def _slide(space, islands, a, x, b, margin):
 
 @kernel
 def _cut(space, islands, a, x, b, margin):
-    """Cut off the corner a-x-b as far as is free; return the two ends, ``x`` for little gain."""
+    """Cut the corner a-x-b as far as is free; return its vertices (2, dim), or ``x`` (1, dim)."""
     free, blocked = 0.0, 1.0
     for _ in range(HALVINGS):
         middle = (free + blocked) / 2.0
