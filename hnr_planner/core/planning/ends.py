@@ -38,16 +38,16 @@ def check_allowance(space: Space, goal_tolerance: float, start_escape: float) ->
         check_number('goal_tolerance', goal_tolerance, 0.0),
         check_number('start_escape', start_escape, 0.0),
     )
-    knows_nearest = callable(getattr(space, 'nearest_reachable', None))
-    if allowance.goal_tolerance > 0.0 and not knows_nearest:
+    has_nearest = callable(getattr(space, 'nearest_reachable', None))
+    if allowance.goal_tolerance > 0.0 and not has_nearest:
         raise RequestError(
-            f'goal_tolerance must be 0 in a {type(space).__name__}, which does not know its '
-            f'nearest point to a goal, got {allowance.goal_tolerance!r}'
+            f'goal_tolerance must be 0 in a {type(space).__name__}, which has no '
+            f'nearest_reachable, got {allowance.goal_tolerance!r}'
         )
     if allowance.start_escape > 0.0 and not isinstance(space, GridSpace):
         raise RequestError(
-            f'start_escape must be 0 in a {type(space).__name__}, which has no inflated cells '
-            f'that a start could be led out of, got {allowance.start_escape!r}'
+            f'start_escape must be 0 in a {type(space).__name__}, which has no inflated cells, '
+            f'got {allowance.start_escape!r}'
         )
     return allowance
 
@@ -128,7 +128,7 @@ def _with_free_start(moved: MovedRequest, radius: float) -> MovedRequest:
         return moved
     outside = escape_point(request.space, request.start, request.goal, radius)
     if outside is None:
-        failure = f'; no straight way of {radius:g} m at most leads out of there'
+        failure = f'; no straight segment of {radius:g} m at most leads to free space'
         return replace(moved, reasons=moved.reasons + failure)
     escape = math.dist(request.start, outside)
     request = request.moved(start=outside)
@@ -137,7 +137,7 @@ def _with_free_start(moved: MovedRequest, radius: float) -> MovedRequest:
         request=request,
         outcome=outcome_without_search(request),
         escape=escape,
-        reasons=f'{moved.reasons}; the start was led out by {escape:.4g} m because {why}',
+        reasons=f'{moved.reasons}; the start was moved by {escape:.4g} m because {why}',
     )
 
 

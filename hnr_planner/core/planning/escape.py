@@ -47,9 +47,9 @@ def escape_point(space: GridSpace, start: Floats, goal: Floats, radius: float) -
     points, reachable = _free_points(components, first, here, space.margin)
     lengths = np.hypot(*(points - here).T)
     order = np.lexsort([lengths, reachable != space.component_of(goal)])
-    ways = GridSpace.from_blocked(~passable)
+    allowed = GridSpace.from_blocked(~passable)
     for point in points[order[lengths[order] <= reach]]:
-        if ways.is_path_free(np.stack([inside, point]) - first):
+        if allowed.is_path_free(np.stack([inside, point]) - first):
             return space.from_cells(point)
     return None
 

@@ -191,8 +191,8 @@ def _check_clearance(space: Space, clearance: float, simplify: bool) -> float:
     clearance = check_number('clearance', clearance, 0.0, CLEARANCE_MAX)
     if clearance > 0.0 and space.walls is None:
         raise RequestError(
-            f'clearance must be 0 in a {type(space).__name__}, which does not know how far '
-            f'its walls are, got {clearance!r}'
+            f'clearance must be 0 in a {type(space).__name__}, which does not measure '
+            f'the distance to its walls, got {clearance!r}'
         )
     if clearance > 0.0 and not simplify:
         raise RequestError(f'clearance must be 0 when simplify is false, got {clearance!r}')

@@ -90,8 +90,8 @@ def check_kinodynamic_request(
         )
     if not supports_curves(space.data):
         raise RequestError(
-            f'no trajectory can be planned in a {type(space).__name__}, which does not know where '
-            f'curves leave it, got system {system!r}'
+            f'no trajectory can be planned in a {type(space).__name__}, which does not compute '
+            f'the first exit of curves, got system {system!r}'
         )
     state = system.check_state('start', start)
     planner = make_kinodynamic_planner(algorithm, settings, system, boundary)

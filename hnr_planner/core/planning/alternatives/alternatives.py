@@ -57,8 +57,8 @@ def check_alternatives(space: Space, alternatives: int, simplify: bool) -> int:
     n_paths = check_count('alternatives', alternatives, 1)
     if n_paths > 1 and space.island_points is None:
         raise RequestError(
-            f'alternatives must be 1 in a {type(space).__name__}, which does not know on which '
-            f'side of its obstacles a path passes, got {n_paths}'
+            f'alternatives must be 1 in a {type(space).__name__}, which does not compute '
+            f'on which side of obstacles a path passes, got {n_paths}'
         )
     if n_paths > 1 and not simplify:
         raise RequestError(f'alternatives must be 1 when simplify is false, got {n_paths}')
