@@ -101,6 +101,7 @@ class MovedRequest:
             others=tuple(self._led_out(path) for path in result.others),
             first_solution=first,
             escape=self.escape,
+            lower_bound=result.lower_bound + self.escape,
         )
 
     def _led_out(self, path: Floats) -> Floats:

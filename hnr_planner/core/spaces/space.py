@@ -224,14 +224,6 @@ class Space(ABC):
         """
         return True
 
-    def rough_path(self, start: Floats, goal: Floats) -> Floats | None:
-        """
-        Return a free path (m, dim) that takes a short route around obstacles, kernel frame.
-
-        It may wander between them. None where the space knows no path.
-        """
-        return None
-
     def contains(self, points: ArrayLike) -> Any:
         """
         Return which points are free.
