@@ -5,12 +5,12 @@ from typing import Protocol
 
 from hnr_planner.core.errors import Cancelled
 
-#: Rows that are handled between two checks of a cancellation.
+#: Rows handled between two checks for cancellation.
 ROWS = 64
 
 
 class Event(Protocol):
-    """Something that can be set from another thread, as ``threading.Event``."""
+    """An event that another thread can set, such as ``threading.Event``."""
 
     def is_set(self) -> bool:
         """Return whether it was set."""

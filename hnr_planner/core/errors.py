@@ -6,7 +6,7 @@ class HnrError(Exception):
 
 
 class SpaceError(HnrError, ValueError):
-    """A space was asked for with numbers that describe none."""
+    """The arguments of a space describe none: the message names the value and the rule."""
 
 
 class RequestError(HnrError, ValueError):
@@ -14,12 +14,12 @@ class RequestError(HnrError, ValueError):
 
 
 class Cancelled(HnrError):
-    """Work that has no answer without its end was cancelled."""
+    """A call was cancelled before it had a result to return."""
 
 
 class Interrupted(HnrError):
-    """A kernel that ran interpreted ended early: its time is over, or it was cancelled."""
+    """An interpreted kernel ended early: its time was over, or the call was cancelled."""
 
 
 class StuckError(HnrError, RuntimeError):
-    """A chain of a random walk does not move any more."""
+    """A chain of a random walk has stopped moving."""

@@ -1,4 +1,4 @@
-"""Lengths of vectors and of paths."""
+"""Lengths of vectors and of paths, in the units of their coordinates."""
 
 import math
 

@@ -1,9 +1,9 @@
-"""Trees in tables: each row holds the row of its parent; a root has none."""
+"""Trees as arrays of parents: entry ``k`` is the row of the parent of row ``k``."""
 
 from hnr_planner.core.kernels.kernel import kernel
 import numpy as np
 
-#: Stands for no row: the parent of a root, or a tree that does not exist.
+#: No row: the parent of a root, or the root of a tree that does not exist.
 NONE = -1
 
 

@@ -1,9 +1,9 @@
 """
 Machine code ahead of the first request: waited for, in the background, or for an image.
 
-A use of the package (``USES``) is a workload: a function that asks what requests of that use ask,
-on a small grid. ``warm_up`` runs it and compiles what is missing on the way;
-``compile_in_background`` returns at once; ``compile_all`` reports its progress.
+A use of the package (``USES``) is a workload: a function that makes typical requests on a small
+grid, and so calls every kernel of that use. ``warm_up`` runs it and waits for the machine code
+that is missing; ``compile_in_background`` returns at once; ``compile_all`` reports its progress.
 """
 
 from collections.abc import Callable
@@ -31,23 +31,23 @@ from hnr_planner.core.trajectories.registry import KINODYNAMIC_PLANNERS
 from hnr_planner.core.trajectories.request import check_kinodynamic_request
 import numpy as np
 
-#: Points on both sides of a wall, so that there is something to search for.
+#: Points [m] on both sides of a wall, so that a search is needed.
 START, GOAL = (0.5, 0.5), (0.5, 4.5)
-#: Transitions of each search: enough to need all that a search needs.
+#: Transitions of each search: enough to call every kernel of a search.
 N_ITERATIONS = 300
 
-#: Called with how many kernels are done, how many there are, and the name of the last one.
+#: Called with the number of kernels done, their total number, and the name of the last one.
 Progress: TypeAlias = Callable[[int, int, str], None]
 
 
 def warm_up(*uses: str) -> None:
     """
-    Compile, or load from the cache, all that requests on a grid need, and wait for it.
+    Compile, or load from the cache, all machine code for requests on a grid, and wait for it.
 
     Parameters
     ----------
     *uses : str
-        What will be asked for: 'paths', 'motions' of systems, 'samples'; all of it if left out.
+        Kinds of requests: 'paths', 'motions' of systems, 'samples'; all of them when left out.
 
     Raises
     ------
@@ -62,10 +62,10 @@ def warm_up(*uses: str) -> None:
 
 def compile_in_background(*uses: str) -> None:
     """
-    Load all that requests on a grid need, and compile what is not in the cache; return at once.
+    Load the machine code for requests on a grid, compile what is missing; return at once.
 
-    Requests are answered meanwhile, and what they wait for comes first.
-    ``hnr_planner.core.kernels.compilation.status`` says how far it is.
+    Requests run meanwhile, interpreted where they have to; the kernels that they call are compiled
+    first. ``hnr_planner.core.kernels.compilation.status`` returns the progress.
 
     Parameters
     ----------
@@ -84,19 +84,19 @@ def compile_in_background(*uses: str) -> None:
 
 def compile_all(*uses: str, progress: Progress | None = None) -> int:
     """
-    Compile into the cache all that requests on a grid need, for installers and images.
+    Compile into the cache all machine code for requests on a grid, for installers and images.
 
     Parameters
     ----------
     *uses : str
         As for ``warm_up``.
     progress : callable, optional
-        Called after each kernel with how many are done, how many there are, and its name.
+        Called after each kernel with the number done, their total number, and its name.
 
     Returns
     -------
     int
-        How many kernels were compiled: those that were not in the cache.
+        Number of kernels compiled: those that were not in the cache.
 
     Raises
     ------
@@ -115,7 +115,7 @@ def compile_all(*uses: str, progress: Progress | None = None) -> int:
 
 
 def find_paths() -> None:
-    """Plan by every algorithm, with every option that needs kernels of its own."""
+    """Plan by every algorithm, with every option that calls further kernels."""
     space, winding = _grid_with_island(), _winding_grid()
     for algorithm in ALGORITHMS:
         for grid in (space, winding):
@@ -137,7 +137,7 @@ def find_paths() -> None:
 
 
 def find_motions() -> None:
-    """Plan for a system by every algorithm, and what only fast starts and long motions need."""
+    """Plan for a system by every algorithm, for fast starts and long motions too."""
     space, system, start = _small_grid(), DoubleIntegrator(), (*START, 0.0, 0.0)
     for algorithm in KINODYNAMIC_PLANNERS:
         plan_trajectory(
@@ -167,7 +167,7 @@ def find_motions() -> None:
 
 
 def _reduce_motion(space: GridSpace, system: DoubleIntegrator, start: tuple[float, ...]) -> None:
-    """Reduce a motion of one step: there is nothing to do, but it needs the same kernel."""
+    """Reduce a motion of one step: it calls the kernel that long motions need."""
     request = check_kinodynamic_request(
         space,
         system,
@@ -195,14 +195,14 @@ def draw_samples() -> None:
 
 
 def _small_grid() -> GridSpace:
-    """Return a room with a wall across most of it."""
+    """Return a grid with a wall across most of it."""
     blocked = np.zeros((5, 5), dtype=bool)
     blocked[2, :4] = True
     return GridSpace.from_blocked(blocked)
 
 
 def _grid_with_island() -> GridSpace:
-    """Return a room with an obstacle between start and goal: paths have to be shortened."""
+    """Return a grid with an obstacle between start and goal: paths have to be shortened."""
     blocked = np.zeros((12, 12), dtype=bool)
     blocked[4:8, 4:8] = True
     return GridSpace.from_blocked(blocked, 0.25)

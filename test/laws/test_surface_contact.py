@@ -12,7 +12,12 @@ from hnr_planner.core import (
     Space,
     UnionSpace,
 )
-from hnr_planner.core.spaces.curves.curve import Arc, first_exit_on_curve, knows_curves, Parabola
+from hnr_planner.core.spaces.curves.curve import (
+    Arc,
+    first_exit_on_curve,
+    Parabola,
+    supports_curves,
+)
 import numpy as np
 import pytest
 from shapely import Polygon
@@ -102,4 +107,4 @@ def test_a_gap_that_rays_pass_is_passed_by_curves() -> None:
 
 
 def test_only_spaces_whose_parts_all_have_surfaces_know_curves() -> None:
-    assert all(knows_curves(space.data) for _, space in CASES)
+    assert all(supports_curves(space.data) for _, space in CASES)

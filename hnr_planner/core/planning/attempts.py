@@ -1,8 +1,8 @@
 """
-Attempts at a request: search, shorten, increase the clearance; again, for a better path.
+Attempts at a request: search, shorten, increase the clearance; repeat for a better path.
 
-Each attempt has random streams of its own, so that none depends on how many came before it or on
-how long they took.
+Each attempt has its own random streams, so that its result does not depend on the number or the
+duration of earlier attempts.
 """
 
 from collections.abc import Callable
@@ -27,9 +27,9 @@ Found = TypeVar('Found')
 
 #: A path at most this many times as long as the lower bound is the shortest, up to margins.
 PROVED = 1.0 + 1e-6
-#: Fraction of the cost that a round has to gain to count as one that did.
+#: Least decrease of the cost, as a fraction, for which a round counts as a gain.
 LEAST_GAIN = 1e-3
-#: Searches that are begun again because their path was not free in the caller's coordinates.
+#: Largest number of searches when paths are not free in the caller's coordinates.
 RESTARTS_MAX = 100
 #: Purposes of random streams: to search, to shorten what was found.
 SEARCH, SHORTEN = 0, 1
@@ -37,16 +37,16 @@ SEARCH, SHORTEN = 0, 1
 
 class Attempt(NamedTuple):
     """
-    One search, and the path that came of it.
+    One search, and the path that resulted.
 
     Attributes
     ----------
     status : PlannerStatus
     search : PathSearch
     path : (m, dim)
-        Caller's frame; (0, dim) when there is none.
+        Path in the caller's frame; (0, dim) when none was found.
     cost : float
-        What is least for the best path: its length, and more near walls if a clearance was asked.
+        Cost that attempts minimize: the length, weighted near walls where a clearance is wanted.
     first : FirstSolution or None
         The path as found.
     planner : str
@@ -99,7 +99,7 @@ def attempt(
 def _improved(
     request: Request, number: int, search: PathSearch, path: Floats, budget: Budget
 ) -> tuple[Floats, float]:
-    """Return a path (m, dim) shortened and moved away from walls as was asked, and its cost."""
+    """Return a path (m, dim) shortened and moved away from walls as requested, and its cost."""
     if request.simplify and not search.taut and len(path) > 2:
         space, rng, found = request.space, request.stream(number, SHORTEN), path
         path = budget.within(lambda: shorten(space, found, rng, budget), found)
@@ -121,9 +121,9 @@ def optimize(
     began: float,
 ) -> tuple[Attempt, Work]:
     """
-    Search for better paths from fresh seeds: return the best, and the work of all searches.
+    Search for better paths with further streams; return the best, and the work of all searches.
 
-    After ``patience`` rounds in a row that gain hardly anything no more are tried.
+    It ends after ``patience`` consecutive rounds without a gain.
     """
     work, number, idle = Work.of(best.search), 1, 0
     while number <= rounds and idle < patience and budget.stop() is None:
@@ -139,7 +139,7 @@ def optimize(
 
 
 def with_clearance(request: Request, path: Floats, budget: Budget) -> Floats:
-    """Return a path (m, dim) moved away from walls, where that was asked for."""
+    """Return a path (m, dim) moved away from walls, where a clearance is requested."""
     if request.clearance == 0.0:
         return path
     space, clearance = request.space, request.clearance
@@ -171,16 +171,16 @@ def search_until_free(
     Search until a path is free in the caller's coordinates, or a limit is met.
 
     A path so close to a corner that those coordinates round it into the obstacle does not count:
-    then the search begins again, from another stream.
+    then the search is repeated with another stream.
 
     Parameters
     ----------
     start : callable
-        Starts the search of a number, 0 for the first.
+        Starts search number ``k``, 0 for the first.
     found_by : callable
-        Returns what a solved search found, None when that is not free.
+        Returns what a solved search found; None when that is not free.
     budget : Budget
-        Of all searches together.
+        Limits of all searches together.
 
     """
     for salt in range(RESTARTS_MAX):
@@ -197,7 +197,7 @@ def search_until_free(
 
 
 def _in_caller_s_frame(request: Request, points: Floats) -> Floats:
-    """Path (m, dim) found in the kernel frame; its ends are the caller's own numbers."""
+    """Convert a path (m, dim) from the kernel frame; its ends are exactly the caller's."""
     path = request.space.from_kernel(points)
     path[0] = request.start
     if points[-1].tolist() == request.problem.goal.tolist():

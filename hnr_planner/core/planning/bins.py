@@ -1,4 +1,4 @@
-"""Square bins over the first two coordinates of a box, with a rim of empty bins all around."""
+"""Square bins over the first two coordinates of a box, surrounded by a rim of empty bins."""
 
 import math
 from typing import NamedTuple
@@ -33,7 +33,7 @@ class Bins(NamedTuple):
 
 @kernel
 def make_bins(lower, upper, side):
-    """Return bins of this side over the box from ``lower`` to ``upper`` (dim,)."""
+    """Return bins of side ``side`` over the box from ``lower`` to ``upper`` (dim,)."""
     width, height = upper[0] - lower[0], upper[1] - lower[1] if len(lower) > 1 else 0.0
     return Bins(lower, side, int(width / side) + 3, int(height / side) + 3)
 

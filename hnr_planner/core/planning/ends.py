@@ -1,4 +1,4 @@
-"""Ends of a request that may be moved: a goal within a tolerance, a start that is led out."""
+"""Ends of a request that may be moved: the goal within a tolerance, the start out of inflation."""
 
 from dataclasses import dataclass, replace
 import math
@@ -21,10 +21,10 @@ class Allowance:
     Attributes
     ----------
     goal_tolerance : float
-        Distance from the goal [m] within which a goal that is blocked or cannot be reached gives
-        way to the nearest point that can.
+        Distance [m] within which a goal that is blocked or cannot be reached is replaced by the
+        nearest point that can be reached.
     start_escape : float
-        Length [m] of the longest straight way that leads a start out of inflated cells.
+        Length [m] of the longest straight segment from a start in inflated cells to free space.
 
     """
 
@@ -38,16 +38,16 @@ def check_allowance(space: Space, goal_tolerance: float, start_escape: float) ->
         check_number('goal_tolerance', goal_tolerance, 0.0),
         check_number('start_escape', start_escape, 0.0),
     )
-    knows_nearest = callable(getattr(space, 'nearest_reachable', None))
-    if allowance.goal_tolerance > 0.0 and not knows_nearest:
+    has_nearest = callable(getattr(space, 'nearest_reachable', None))
+    if allowance.goal_tolerance > 0.0 and not has_nearest:
         raise RequestError(
-            f'goal_tolerance must be 0 in a {type(space).__name__}, which does not know its '
-            f'nearest point to a goal, got {allowance.goal_tolerance!r}'
+            f'goal_tolerance must be 0 in a {type(space).__name__}, which has no '
+            f'nearest_reachable, got {allowance.goal_tolerance!r}'
         )
     if allowance.start_escape > 0.0 and not isinstance(space, GridSpace):
         raise RequestError(
-            f'start_escape must be 0 in a {type(space).__name__}, which has no inflated cells '
-            f'that a start could be led out of, got {allowance.start_escape!r}'
+            f'start_escape must be 0 in a {type(space).__name__}, which has no inflated cells, '
+            f'got {allowance.start_escape!r}'
         )
     return allowance
 
@@ -60,17 +60,17 @@ class MovedRequest:
     Attributes
     ----------
     request : Request
-        The request to answer.
+        The request with the ends as moved.
     outcome : (PlannerStatus, str) or None
-        Its outcome when it needs no search, as of ``outcome_without_search``.
+        Its outcome when it needs no search (``outcome_without_search``).
     start : (dim,)
-        The start asked for.
+        The start before it was moved.
     goal_offset : float
         Distance by which the goal was moved [m].
     escape : float
         Distance by which the start was moved [m].
     reasons : str
-        Why they were moved, to follow on a message.
+        Why they were moved: a suffix of the result's message.
 
     """
 
@@ -81,8 +81,8 @@ class MovedRequest:
     escape: float = 0.0
     reasons: str = ''
 
-    def lead_out(self, result: PlanResult) -> PlanResult:
-        """Return the result of the moved request as one of the request as it was asked."""
+    def restore_ends(self, result: PlanResult) -> PlanResult:
+        """Return the result for the original start: its paths begin with the escape."""
         result = replace(result, message=result.message + self.reasons)
         if result.status is not PlannerStatus.SOLVED:
             return result
@@ -92,19 +92,19 @@ class MovedRequest:
         first = result.first_solution
         if first is not None:
             first = first._replace(
-                length=first.length + self.escape, path=self._led_out(first.path)
+                length=first.length + self.escape, path=self._with_start(first.path)
             )
         return replace(
             result,
-            path=self._led_out(result.path),
+            path=self._with_start(result.path),
             length=result.length + self.escape,
-            others=tuple(self._led_out(path) for path in result.others),
+            others=tuple(self._with_start(path) for path in result.others),
             first_solution=first,
             escape=self.escape,
             lower_bound=result.lower_bound + self.escape,
         )
 
-    def _led_out(self, path: Floats) -> Floats:
+    def _with_start(self, path: Floats) -> Floats:
         return np.vstack([self.start, path])
 
 
@@ -123,13 +123,13 @@ def move_ends(request: Request, allowance: Allowance) -> MovedRequest:
 
 
 def _with_free_start(moved: MovedRequest, radius: float) -> MovedRequest:
-    """Lead a start that is not free out by at most ``radius`` [m]."""
+    """Move a start that is not free to a free point within ``radius`` [m]."""
     request, (status, why) = moved.request, moved.outcome or (None, '')
     if status is not PlannerStatus.INVALID_START or not isinstance(request.space, GridSpace):
         return moved
     outside = escape_point(request.space, request.start, request.goal, radius)
     if outside is None:
-        failure = f'; no straight way of {radius:g} m at most leads out of there'
+        failure = f'; no straight segment of {radius:g} m at most leads to free space'
         return replace(moved, reasons=moved.reasons + failure)
     escape = math.dist(request.start, outside)
     request = request.moved(start=outside)
@@ -138,7 +138,7 @@ def _with_free_start(moved: MovedRequest, radius: float) -> MovedRequest:
         request=request,
         outcome=outcome_without_search(request),
         escape=escape,
-        reasons=f'{moved.reasons}; the start was led out by {escape:.4g} m because {why}',
+        reasons=f'{moved.reasons}; the start was moved by {escape:.4g} m because {why}',
     )
 
 

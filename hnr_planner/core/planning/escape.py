@@ -1,9 +1,10 @@
 """
-The way out of a start that is not free: straight, short, and never through an obstacle.
+Escape from a start that is not free: a short segment to free space, never through an obstacle.
 
-A robot may stand where the map says that it cannot: a little too near to a wall, or in an unknown
-cell. It is led to free space in a straight line that crosses nothing but free cells, cells that
-only inflation blocks, and the cell of the start itself. A start in an obstacle has no way out.
+The position of a robot may be blocked in the map: a little too near to a wall, or in an unknown
+cell. The escape is a straight segment to free space that crosses nothing but free cells, cells
+that only inflation blocks, and the cell of the start itself. From a start in an obstacle there is
+none.
 """
 
 from hnr_planner.core.checks import Floats
@@ -14,11 +15,11 @@ from numpy.typing import NDArray
 
 def escape_point(space: GridSpace, start: Floats, goal: Floats, radius: float) -> Floats | None:
     """
-    Return the nearest free point (2,) that a straight way leads to; None when there is none.
+    Return the nearest free point (2,) [m] that a segment reaches; None when there is none.
 
-    Points from which the goal can be reached come first. Of each cell its nearest point and, where
-    that is hidden behind a corner, its centre are tried. A start outside the map has no way in:
-    nothing is known of what lies between.
+    Points from which the goal can be reached are preferred. In each free cell the point nearest to
+    the start is tried and, where that is hidden behind a corner, the centre. For a start outside
+    the map there is none: what lies between it and the map is unknown.
 
     Parameters
     ----------
@@ -27,7 +28,7 @@ def escape_point(space: GridSpace, start: Floats, goal: Floats, radius: float) -
     start, goal : (2,)
         Start, and goal of the path to be planned [m].
     radius : float
-        Longest way out [m].
+        Length of the longest escape [m].
 
     """
     cell = None if not space.reaches_to(start) else _own_cell(space, start)
@@ -41,14 +42,14 @@ def escape_point(space: GridSpace, start: Floats, goal: Floats, radius: float) -
     components = space.components[window]
     passable = (components > 0) | space.inflated(*window)
     passable[cell[1] - first[1], cell[0] - first[0]] = True
-    # On the edge of its cell the start may touch an obstacle: the way begins inside the edge.
+    # On the edge of its cell the start may touch an obstacle: the segment begins inside the edge.
     inside = np.clip(here, cell + space.margin, cell + 1.0 - space.margin)
     points, reachable = _free_points(components, first, here, space.margin)
     lengths = np.hypot(*(points - here).T)
     order = np.lexsort([lengths, reachable != space.component_of(goal)])
-    ways = GridSpace.from_blocked(~passable)
+    allowed = GridSpace.from_blocked(~passable)
     for point in points[order[lengths[order] <= reach]]:
-        if ways.is_path_free(np.stack([inside, point]) - first):
+        if allowed.is_path_free(np.stack([inside, point]) - first):
             return space.from_cells(point)
     return None
 
@@ -73,7 +74,7 @@ def _free_points(
     Return points (k, 2) of the free cells of a window, and the component (k,) of each.
 
     In cells of the whole grid; ``first`` is the (column, row) where the window begins. A shortest
-    way enters free space where it ends, so cells amid free ones are left out.
+    escape ends where it enters free space, so cells with free neighbours only are left out.
     """
     import cv2  # only where it is needed: it takes long to import
 

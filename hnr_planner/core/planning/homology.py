@@ -46,7 +46,7 @@ def islands_at(points: Floats) -> Islands:
     return Islands(x.copy(), y.copy(), words)
 
 
-#: For paths that may pass everything on any side.
+#: No islands: paths may pass obstacles on any side.
 NO_ISLANDS = islands_at(np.empty((0, 2)))
 
 
@@ -68,7 +68,7 @@ def crossings(islands, a, b):
 
 @kernel
 def signature(islands, path):
-    """Return the int64 that is the sum over all crossings of a path (m, 2)."""
+    """Return the sum (int64) of the signatures of the segments of a path (m, 2)."""
     total = np.int64(0)
     if len(islands.x) == 0:
         return total

@@ -23,7 +23,7 @@ BATCH_TIME = (0.25e-3, 0.5e-3)
 @dataclass
 class Budget:
     """
-    Limits on the work for one request, and whether one of them cut it short.
+    Limits on the work for one request, and whether the clock or a cancellation cut it short.
 
     Attributes
     ----------
@@ -60,7 +60,7 @@ class Budget:
                 return work()
         except Interrupted:
             if self.stop() is None:
-                raise  # by a condition of the caller's own
+                raise  # a condition set by the caller ended it, not this budget
             return otherwise
 
 

@@ -64,7 +64,7 @@ def plan(
     **settings: Any,
 ) -> PlanResult:
     """
-    Find a free path.
+    Find a free path from start to goal.
 
     Parameters
     ----------
@@ -87,19 +87,19 @@ def plan(
     simplify : bool
         Whether the path is shortened by visibility.
     clearance : float
-        Distance to obstacles [m] that the path keeps where there is room; narrower places are
-        passed in their middle. 0 for the shortest path. It needs ``simplify`` and a space that
+        Distance to obstacles [m] that the path keeps where it can; narrower passages are passed
+        in their middle. 0 for the shortest path. It needs ``simplify`` and a space that
         measures the distance to its walls.
     optimize_for : float
-        Seconds of the call, within the time limit, in which further searches look for a shorter
-        path; a straight one ends that. The clock only cuts: searches are bounded by their number,
+        Seconds of the call, within the time limit, for further searches for a shorter path; they
+        end once the path is straight. The clock only cuts: searches are bounded by their number,
         in proportion to the seconds, and end sooner when several in a row gain nothing. So the
         same seed gives the same path on a machine that is fast enough.
     optimize_iterations : int
-        Number of further searches for a shorter path; together with ``optimize_for`` whichever
-        ends first, in place of the bound above.
+        Number of further searches for a shorter path, instead of the number that follows from
+        ``optimize_for``; where both are given, the first to end counts.
     alternatives : int
-        How many paths to look for, none of which can be deformed into another past an obstacle:
+        Number of paths to find, none of which can be deformed into another past an obstacle:
         ``PlanResult.paths``, the shortest first. There may be fewer. All have the same ends, also
         in a goal region.
     goal_tolerance : float
@@ -107,8 +107,8 @@ def plan(
         this distance [m] that can: ``PlanResult.goal_offset`` and the message state it. A goal
         that is free and reachable is never moved. It needs a space with ``nearest_reachable``.
     start_escape : float
-        Where the start is not free because of inflation, or in an unknown cell, the path begins
-        with a straight way out of it of at most this length [m]: ``PlanResult.escape`` and the
+        Where the start is blocked by inflation, or in an unknown cell, the path begins with a
+        straight segment to free space of at most this length [m]: ``PlanResult.escape`` and the
         message state it. It crosses no occupied cell; from inside an obstacle there is none. It
         needs a ``GridSpace``.
     cancel : threading.Event, optional
@@ -163,7 +163,7 @@ def plan(
             lambda: with_alternatives(request, found, n_paths, budget, began),
             replace(found, cut_by_time=True),
         )
-    return moved.lead_out(result)
+    return moved.restore_ends(result)
 
 
 def _refuse_trajectories(settings: dict[str, Any]) -> None:
@@ -178,7 +178,7 @@ def _refuse_trajectories(settings: dict[str, Any]) -> None:
 def _result_of_search(
     request: Request, effort: Effort, budget: Budget, began: float
 ) -> PlanResult:
-    """Search, and search again for a better path where that is asked for."""
+    """Search, search again for a better path where that is requested, and build the result."""
     optimizing = effort.optimizing(budget, began) if effort.optimizes else None
     best = attempt(request, 0, budget, began, optimizing)
     first, work = best.first, Work.of(best.search)

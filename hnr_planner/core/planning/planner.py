@@ -3,8 +3,8 @@ Protocols of planners and searches: planners start searches, which advance by co
 
 A planner is a frozen dataclass whose fields are its settings. Its ``start`` gives a search, whose
 ``advance(n)`` handles at most ``n`` further transitions. Batches may be of any size: the same
-problem and generator give the same samples and the same path to the last bit. A start that reaches
-the goal as it is needs no search, and is given none. All arrays are in the space's kernel frame.
+problem and generator give the same samples and the same path to the last bit. No search is
+started where the start reaches the goal directly. All arrays are in the space's kernel frame.
 """
 
 from typing import Any, NamedTuple, Protocol
@@ -17,20 +17,20 @@ from hnr_planner.core.spaces.space import Space
 import numpy as np
 from numpy.typing import NDArray
 
-#: Factor by which a table grows when it is full.
+#: Factor by which an array grows when it is full.
 GROWTH = 8
 
 
 class Problem(NamedTuple):
     """
-    A planning problem in the kernel frame of a space; kernels take it as it is.
+    A planning problem in the kernel frame of a space, as it is passed to kernels.
 
     Attributes
     ----------
     space : NamedTuple
         The compiled space.
     lower, upper : (dim,)
-        A box around it.
+        Corners of a box around the space.
     start, goal : (dim,)
         Start and centre of the goal region.
     goal_radius : float
@@ -38,7 +38,7 @@ class Problem(NamedTuple):
     margin : float
         Distance from a chord's end at which one stops.
     typical_clearance : float
-        Distance from a free point to the boundary, roughly and on average.
+        Rough mean distance from a free point to the boundary.
     scale : float
         Caller's units [m] in one unit of the kernel frame.
 
@@ -73,7 +73,7 @@ def make_problem(space: Space, start: Floats, goal: Floats, goal_radius: float) 
 
 @kernel
 def reaches_goal(problem, x):
-    """Return whether ``x`` (dim,) ends a search: in the region, or with an exact goal visible."""
+    """Return whether ``x`` (dim,) lies in the goal region, or an exact goal is visible from it."""
     if problem.goal_radius == 0.0:
         return segment_is_free(problem.space, x, problem.goal)
     squared = 0.0
@@ -83,7 +83,7 @@ def reaches_goal(problem, x):
 
 
 class Search(Protocol):
-    """A search under way."""
+    """A running search."""
 
     @property
     def iterations(self) -> int:
@@ -128,7 +128,7 @@ class Work(NamedTuple):
 
 
 class PathSearch(Search, Protocol):
-    """A search for a path."""
+    """A running search for a path."""
 
     @property
     def path(self) -> Floats:
@@ -136,22 +136,22 @@ class PathSearch(Search, Protocol):
 
     @property
     def taut(self) -> bool:
-        """Whether pulling the path of a solved search taut gains nothing."""
+        """Whether the path of a solved search is taut: shortening it gains nothing."""
 
 
 class Planner(Protocol):
-    """A planner: a name, and how to start a search."""
+    """A planner: its name and settings; ``start`` begins a search."""
 
     @property
     def name(self) -> str:
-        """Name that results state."""
+        """Name of the planner in results."""
 
     def start(self, problem: Problem, rng: Stream) -> PathSearch:
-        """Start a search."""
+        """Start a search for a path that solves ``problem``, with a random stream."""
 
 
 def for_space(planner: Planner, space: Space) -> Planner:
-    """Return a planner with what it needs to know of a space, where it needs anything."""
+    """Return a planner with the data that it needs of a space, where it needs any."""
     bind = getattr(planner, 'for_space', None)
     return planner if bind is None else bind(space)
 
@@ -161,12 +161,12 @@ def to_goal(problem: Problem, points: Floats) -> Floats:
     return points if problem.goal_radius > 0.0 else np.vstack([points, problem.goal])
 
 
-def with_room(array: NDArray[Any], rows: int) -> NDArray[Any]:
+def with_capacity(array: NDArray[Any], rows: int) -> NDArray[Any]:
     """
-    Return ``array``, or a copy several times as long when it has fewer than ``rows``.
+    Return ``array``, or a copy several times as long when it has fewer than ``rows`` rows.
 
-    A clock is not checked during a copy, so copies are rare; rows that are not used yet take no
-    memory.
+    The clock is not checked during a copy, so copies are rare. The operating system provides
+    memory for rows only once they are written.
     """
     if len(array) >= rows:
         return array

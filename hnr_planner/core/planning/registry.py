@@ -1,8 +1,8 @@
 """
 The planners of ``plan``, each listed once.
 
-Names and descriptions are known without importing any planner, so that command lines and
-documentation can show them at once: this module needs neither NumPy nor the compiler.
+Names and descriptions need no import of a planner, so that command lines and documentation can
+show them at once: this module imports neither NumPy nor numba.
 """
 
 from __future__ import annotations
@@ -19,16 +19,16 @@ _PLANNERS = 'hnr_planner.core.planning.planners'
 
 class PlannerEntry(NamedTuple):
     """
-    A planner as it is listed: its name, where its class is, and what it does.
+    A planner's name, the location of its class, and a description of how it searches.
 
     Attributes
     ----------
     name : str
         Name that ``algorithm`` takes.
     module, class_name : str
-        Where the class is; it is imported when a planner is made.
+        Location of the class, which is imported when a planner is made.
     summary : str
-        One line that says how it searches.
+        One line on how it searches.
 
     """
 
@@ -99,7 +99,7 @@ def make_planner(
     Raises
     ------
     RequestError
-        When the name or a setting is unknown, or settings come beside a planner value.
+        When the name or a setting is unknown, or settings are given with a planner value.
 
     """
     if not isinstance(algorithm, str):

@@ -23,11 +23,11 @@ from hnr_planner.core.spaces.primitives import component
 from hnr_planner.core.spaces.space import Space
 from numpy.typing import ArrayLike
 
-#: Rounds of looking for better answers for each second of ``optimize_for``, and rounds in a row
-#: without a gain after which no more are tried. On an office map a round takes about a millisecond
-#: on a busy machine, so the clock hardly ever cuts; after five rounds .02 % are left to gain.
+#: Rounds of optimization for each second of ``optimize_for``, and consecutive rounds without a
+#: gain that end it. On an office map a round takes about a millisecond on a busy machine, so the
+#: clock hardly ever cuts; after five rounds .02 % are left to gain.
 ROUNDS_PER_SECOND, PATIENCE = 300, 5
-#: Largest clearance that may be asked for [m].
+#: Largest clearance that may be requested [m].
 CLEARANCE_MAX = 1e6
 
 
@@ -43,9 +43,9 @@ class Effort:
     max_iterations : float
         Transitions allowed for one search; may be inf.
     optimize_for : float
-        Time of the call in which better answers are looked for [s]; 0 for no such limit.
+        Time of the call for further searches for a shorter path [s]; 0 when left out.
     optimize_iterations : int
-        Rounds of looking for better answers; 0 for no such limit.
+        Number of further searches for a shorter path; 0 when left out.
     cancel : Event or None
         Ends the call once it is set.
 
@@ -59,27 +59,27 @@ class Effort:
 
     @property
     def optimizes(self) -> bool:
-        """Whether better answers are to be looked for."""
+        """Whether to search further for a shorter path."""
         return self.optimize_for > 0.0 or self.optimize_iterations > 0
 
     @property
     def optimize_rounds(self) -> float:
-        """Largest number of rounds of looking for better answers."""
+        """Largest number of further searches for a shorter path; inf for no limit."""
         if self.optimize_iterations == 0 and self.optimize_for < math.inf:
             return math.ceil(ROUNDS_PER_SECOND * self.optimize_for)
         return self.optimize_iterations or math.inf
 
     @property
     def optimize_patience(self) -> float:
-        """Number of rounds in a row without a gain after which no more are tried."""
+        """Number of consecutive searches without a gain that end the optimization."""
         return PATIENCE if self.optimize_iterations == 0 else math.inf
 
     def budget(self, began: float) -> Budget:
-        """Return the budget of a call that began at this ``working_time``."""
+        """Return the budget of a call that began at ``began``, in ``working_time`` [s]."""
         return Budget(began + self.time_limit, self.max_iterations, self.cancel)
 
     def optimizing(self, budget: Budget, began: float) -> Budget:
-        """Return the part of a call's budget in which better answers are looked for."""
+        """Return the share of a call's budget for further searches for a shorter path."""
         until = began + (self.optimize_for or math.inf)
         return replace(budget, deadline=min(budget.deadline, until))
 
@@ -114,7 +114,7 @@ class Request:
     space : Space
         Where the path has to be free.
     start, goal : (dim,)
-        Caller's frame.
+        Points in the caller's frame [m].
     goal_radius : float
         Radius of the goal region, caller's units; 0 for an exact goal.
     planner : Planner
@@ -122,7 +122,7 @@ class Request:
     simplify : bool
         Whether the path is shortened.
     clearance : float
-        Distance to obstacles that the path keeps where there is room, caller's units.
+        Distance to obstacles that the path keeps where it can, caller's units [m].
     seed : int
         The seed of every draw.
     problem : Problem
@@ -141,7 +141,7 @@ class Request:
     problem: Problem
 
     def stream(self, *purpose: int) -> Stream:
-        """Return the random stream for one purpose: each has its own, all follow from the seed."""
+        """Return the random stream of one purpose, given as numbers; all follow from the seed."""
         return stream(self.seed, *purpose)
 
     def moved(
@@ -150,7 +150,7 @@ class Request:
         goal: Floats | None = None,
         goal_radius: float | None = None,
     ) -> 'Request':
-        """Return the same request with other ends, caller's frame and units."""
+        """Return the same request with the ends given, caller's frame and units."""
         start, goal = (b if a is None else a for a, b in ((start, self.start), (goal, self.goal)))
         goal_radius = self.goal_radius if goal_radius is None else goal_radius
         problem = make_problem(self.space, start, goal, goal_radius)
@@ -187,12 +187,12 @@ def check_request(
 
 
 def _check_clearance(space: Space, clearance: float, simplify: bool) -> float:
-    """Return the clearance asked for, or raise RequestError where it cannot be kept."""
+    """Return the clearance [m], or raise RequestError where the space cannot measure it."""
     clearance = check_number('clearance', clearance, 0.0, CLEARANCE_MAX)
     if clearance > 0.0 and space.walls is None:
         raise RequestError(
-            f'clearance must be 0 in a {type(space).__name__}, which does not know how far '
-            f'its walls are, got {clearance!r}'
+            f'clearance must be 0 in a {type(space).__name__}, which does not measure '
+            f'the distance to its walls, got {clearance!r}'
         )
     if clearance > 0.0 and not simplify:
         raise RequestError(f'clearance must be 0 when simplify is false, got {clearance!r}')
@@ -203,7 +203,8 @@ def outcome_without_search(request: Request) -> tuple[PlannerStatus, str] | None
     """
     Return the status of a request that needs no search, and the reason; None for one that does.
 
-    An end that is not free, no way between the two, or a start that reaches the goal as it is.
+    No search is needed when an end is not free, when no path joins the two components, or when
+    the start reaches the goal directly.
     """
     space, start, goal = request.space, request.start, request.goal
     start_component, goal_component, reached = _components_of_ends(request.problem)
@@ -229,7 +230,7 @@ def outcome_without_search(request: Request) -> tuple[PlannerStatus, str] | None
 
 @kernel
 def _components_of_ends(problem):
-    """Components of start and goal, 0 where not free; whether the start reaches the goal."""
+    """Return the components of start and goal (0: not free), and whether the goal is reached."""
     start_component = component(problem.space, problem.start)
     goal_component = component(problem.space, problem.goal)
     reached = start_component != 0 and reaches_goal(problem, problem.start)

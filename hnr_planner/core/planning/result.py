@@ -24,16 +24,16 @@ class PlannerStatus(Enum):
 
 class FirstSolution(NamedTuple):
     """
-    The first path that was found, before anything made it shorter.
+    The first path that was found, before it was shortened.
 
     Attributes
     ----------
     elapsed : float
         Time from the beginning of the call until it was found [s].
     length : float
-        Its length [m].
+        Length of the path [m].
     path : (m, dim)
-        Its vertices from start to goal, caller's frame; for a trajectory its positions.
+        Vertices from start to goal, caller's frame; for a trajectory its positions.
 
     """
 
@@ -45,7 +45,7 @@ class FirstSolution(NamedTuple):
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class SearchResult:
     """
-    What results of all planners have, in the caller's frame and units.
+    Fields of the results of ``plan`` and ``plan_trajectory``, in the caller's frame and units.
 
     Attributes
     ----------
@@ -70,7 +70,7 @@ class SearchResult:
     elapsed : float
         Time of the whole call [s], compilation aside.
     seed : int
-        The seed that gives this result again.
+        The seed that reproduces this result.
     cut_by_time : bool
         Whether a clock or a cancellation ended something: only then may the same seed give
         another result.
@@ -93,7 +93,7 @@ class SearchResult:
     first_solution: FirstSolution | None
 
     def __repr__(self) -> str:
-        """Return status, length, and how much there is of everything, without the arrays."""
+        """Name status and length, and count vertices, samples and transitions."""
         return (
             f'{type(self).__name__}({self.status.name}, length={self.length:.6g}, '
             f'vertices={len(self.path)}, samples={len(self.samples)}, '
@@ -109,16 +109,16 @@ class PlanResult(SearchResult):
     Attributes
     ----------
     others : tuple of (k, dim)
-        Further paths, when alternatives were asked for.
+        Further paths, when alternatives were requested.
     goal_offset : float
-        Distance from the goal asked for to the end of the path [m], where ``goal_tolerance`` let
-        the goal be moved; else 0.
+        Distance from the requested goal to the end of the path [m] where the goal was moved
+        within ``goal_tolerance``; else 0.
     lower_bound : float
         Length that no free path falls below [m]: that of the path itself, up to margins at
         corners, where it is proved to be the shortest; inf where no path exists.
     escape : float
-        Length of the first segment of the path [m], where ``start_escape`` let it lead out of a
-        start that is not free; else 0.
+        Length of the first segment of the path [m] where it leads from a start that is not free
+        to free space (``start_escape``); else 0.
 
     """
 

@@ -1,10 +1,10 @@
 """
 Chains: runs of a random walk that can be stopped, saved and resumed.
 
-The state of a chain is its point, its random stream, the numbers that the space caches there, and
-counters. ``begin_chains`` makes the states; ``walk_on`` is a pure function from states to draws
-and new states, so that two runs of half the length equal one long run to the last bit. A state
-consists of arrays only, and can be kept in a file:
+The state of a chain is its point, its random stream, the cache of the space, and counters.
+``begin_chains`` makes the states; ``walk_on`` is a pure function from states to draws and new
+states, so that two runs of half the length equal one long run to the last bit. States are arrays
+only, and can be saved to a file:
 
 >>> np.savez('chains.npz', **vars(chains))
 >>> chains = Chains(**np.load('chains.npz'))
@@ -35,8 +35,8 @@ from hnr_planner.core.spaces.space import Space
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-#: A chain is stuck once it has not moved for so many steps. A chain that moves at one step in
-#: fifty stays that long with probability .98 ** 1000 = 2e-9.
+#: Number of steps without a move after which a chain is stuck. A chain that moves at one step in
+#: fifty has so many with probability .98 ** 1000 = 2e-9.
 STUCK_AFTER = 1000
 
 
@@ -167,7 +167,7 @@ def begin_chains(
     space: Space, start: ArrayLike, *, n_chains: int = 1, seed: Seed = None
 ) -> Chains:
     """
-    Make chains at their start, each with a random stream of its own.
+    Make chains at their starts, each with its own random stream.
 
     Parameters
     ----------
@@ -265,7 +265,7 @@ def _check_starts(space: Space, start: ArrayLike) -> Floats:
 
 
 def _check_fit(space: Space, chains: Chains) -> None:
-    """Refuse chains whose arrays have the shape of another space."""
+    """Raise RequestError for chains whose arrays have the shapes of another space."""
     wanted = {
         'points': space.dim,
         'memory': memory_size(space.data, space.dim),

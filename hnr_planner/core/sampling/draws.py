@@ -4,7 +4,7 @@ Random draws: a direction, a point of a ball, a point of a chord, a step of Hit-
 These kernels serve planners, which step from any point: given a compiled space, a free point ``x``
 and a random stream, a step writes the next point into ``y``. It returns the number of redraws:
 draws that rounded onto the boundary and were drawn again, so that ``y`` is always a free point.
-The steps of chains, which start where the last one ended, are in module ``walks``.
+Steps of chains, which start from the point before and reuse its cache, are in module ``walks``.
 """
 
 import math
@@ -14,7 +14,7 @@ from hnr_planner.core.kernels.streams import draw_normals, uniform
 from hnr_planner.core.spaces.primitives import chord, contains
 import numpy as np
 
-#: After so many consecutive redraws the chord holds no other number, and the step stays at ``x``.
+#: Number of redraws after which a chord has no other number, and the step does not move.
 REDRAWS_MAX = 100
 
 

@@ -20,7 +20,7 @@ from hnr_planner.core.spaces.grid.grid_space import GridSpace
 import numpy as np
 from numpy.typing import NDArray
 
-#: Steps between two checks for cancellation: some hundredths of a second.
+#: Steps between two checks for cancellation; they take some hundredths of a second.
 STEPS_AT_ONCE = 2**16
 
 
@@ -135,7 +135,11 @@ def sample_free_space(
 
 
 def pick_cells(free: NDArray[np.intp], n_draws: int, rng: np.random.Generator) -> NDArray[np.intp]:
-    """Pick a uniform cell of ``free`` for each draw: its component, and where that starts."""
+    """
+    Return a uniform cell of ``free`` (k,) for each draw: (n_draws,).
+
+    It determines the component of the draw, and the first one in a component also its start.
+    """
     return free[(rng.random(n_draws) * len(free)).astype(np.intp)]
 
 

@@ -7,7 +7,7 @@ its step::
 
     take_step(walk, space, cache, u, rng, counts) -> moved
 
-The kernel either moves the chain at ``cache`` or leaves it, and returns which. It depends on its
+The kernel may move the chain at ``cache``, and returns whether it did. It depends on its
 arguments only; module ``chains`` calls it in a loop, and counts steps and moves. A further walk is
 a dataclass, a NamedTuple, a kernel registered for that NamedTuple, and a line in ``_WALKS``.
 
@@ -122,7 +122,7 @@ _WALKS: dict[str, Walk] = {
     walk.name: walk for walk in (HitAndRunWalk(), CoordinateHitAndRunWalk(), BallWalk())
 }
 
-#: Names of the walks; each name stands for the walk with its default settings.
+#: Names of the walks with their default settings.
 WALKS = tuple(_WALKS)
 
 
@@ -169,7 +169,7 @@ def take_step(walk: Any, space: Any, cache: Any, u: Any, rng: Any, counts: Any) 
     cache : ChainCache or the space's own
         Position of the chain, which the step changes.
     u : (dim,)
-        Work array for the direction. Coordinate walks need it zero, and leave it zero.
+        Work array for the direction; zero before and after steps of coordinate walks.
     rng : (4,) uint64
         Random stream of the chain.
     counts : (N_COUNTS,) int64
@@ -182,7 +182,7 @@ def take_step(walk: Any, space: Any, cache: Any, u: Any, rng: Any, counts: Any) 
 @take_step.register(HitAndRunStep)
 @inlined
 def _hit_and_run(walk, space, cache, u, rng, counts):
-    """Move to a uniform point of the chord in a uniform direction."""
+    """Move to a uniform point of the chord in a uniform direction; return whether it moved."""
     draw_direction(rng, u)
     return _move_on_chord(walk.zero_length, space, cache, u, NO_AXIS, rng, counts)
 
@@ -190,7 +190,7 @@ def _hit_and_run(walk, space, cache, u, rng, counts):
 @take_step.register(CoordinateHitAndRunStep)
 @inlined
 def _coordinate_hit_and_run(walk, space, cache, u, rng, counts):
-    """Move to a uniform point of the chord along a uniform axis."""
+    """Move to a uniform point of the chord along a uniform axis; return whether it moved."""
     axis = math.floor(uniform(rng) * len(u))
     u[axis] = 1.0
     moved = _move_on_chord(walk.zero_length, space, cache, u, axis, rng, counts)
@@ -201,7 +201,7 @@ def _coordinate_hit_and_run(walk, space, cache, u, rng, counts):
 @take_step.register(BallStep)
 @inlined
 def _ball_walk(walk, space, cache, u, rng, counts):
-    """Move to a uniform point of the ball, unless that or the segment to it is blocked."""
+    """Move to a uniform point of the ball if it, or the segment, is free; return whether."""
     draw_in_ball(walk.radius, rng, u)
     for i in range(len(u)):
         cache.y[i] = cache.x[i] + u[i]
@@ -224,7 +224,7 @@ def _move_on_chord(zero_length, space, cache, u, axis, rng, counts):
 
 @inlined
 def _move_between(space, cache, u, axis, lower, upper, rng, counts):
-    """Move to ``x + s u``, s uniform in (lower, upper); draw again what rounds onto the ends."""
+    """Move by ``s u``, s uniform in (lower, upper) and not on an end; return whether it moved."""
     for _ in range(REDRAWS_MAX):
         s = lower + (upper - lower) * uniform(rng)
         if lower < s < upper and move_along(space, cache, u, axis, s):
@@ -235,7 +235,7 @@ def _move_between(space, cache, u, axis, lower, upper, rng, counts):
 
 @kernel
 def _move_on_zero_chord(space, cache, u, axis, lower, upper, rng, counts):
-    """Move on a chord so short that the only free number on it may be the point itself."""
+    """Move on a chord of few floating-point numbers; return whether the chain moved."""
     counts[ZERO_CHORDS] += 1
     before = cache.x.copy()
     _move_between(space, cache, u, axis, lower, upper, rng, counts)

@@ -1,4 +1,4 @@
-"""Spaces: open, bounded sets of free points that answer points and chords."""
+"""Spaces: open, bounded sets of free points, with tests of membership and chords."""
 
 from hnr_planner.core.spaces.ball import BallSpace
 from hnr_planner.core.spaces.box import BoxSpace

@@ -33,7 +33,7 @@ class BallData(NamedTuple):
     radii : (k,)
         Radii of the balls.
     max_gap : float
-        Longest gap between two balls that a ray passes.
+        Longest gap between two balls that a ray can cross.
 
     """
 
@@ -49,9 +49,9 @@ class BallSpace(Space):
     Parameters
     ----------
     centre : (dim,)
-        Any dimension.
+        Centre of the ball, of any dimension.
     radius : float
-        Above 0.
+        Radius of the ball, above 0.
 
     Raises
     ------
@@ -76,7 +76,7 @@ class BallSpace(Space):
 
     @property
     def bounds(self) -> tuple[Floats, Floats]:
-        """Lower and upper corner (dim,)."""
+        """Lower and upper corner (dim,), caller's frame."""
         return self.centre - self.radius, self.centre + self.radius
 
     @property
@@ -85,17 +85,17 @@ class BallSpace(Space):
         return self.radius / (self.dim + 1)
 
     def compiled_at(self, origin: Floats | None) -> BallData:
-        """Return the compiled ball in the caller's frame moved to ``origin`` (dim,); None: 0."""
+        """Return the compiled ball in the caller's frame moved to ``origin`` (dim,), or not."""
         shift = np.zeros(self.dim) if origin is None else origin
         return BallData((self.centre - shift)[np.newaxis], np.array([self.radius]), 0.0)
 
     def covers_box(self, lower: Floats, upper: Floats) -> bool:
-        """Return whether the corner of a box that is farthest away lies in the closed ball."""
+        """Return whether the closed ball contains the box between two corners (dim,)."""
         farthest = np.maximum(np.abs(lower - self.centre), np.abs(upper - self.centre))
         return bool(np.linalg.norm(farthest) <= self.radius)
 
     def why_not_free(self, point: ArrayLike) -> str:
-        """Return in words why ``point`` (dim,) is not free."""
+        """Return the reason why ``point`` (dim,) is not free."""
         distance = np.linalg.norm(check_point('point', point, self.dim) - self.centre)
         return f'{distance:g} away from the centre of a ball of radius {self.radius:g}'
 
@@ -125,7 +125,7 @@ def _piece_contains(balls, k, x, closed):
 @piece_span.register(BallData)
 @inlined
 def _piece_span(balls, k, x, u, closed):
-    """Solve a s^2 + 2 b s + c = 0, where c has the sign that ``_piece_contains`` finds."""
+    """Return the interval of the line in ball ``k``: between the roots of a s^2 + 2 b s + c."""
     a, b, squared = 0.0, 0.0, 0.0
     for i in range(len(x)):
         offset = x[i] - balls.centres[k, i]
@@ -148,7 +148,7 @@ def _piece_span(balls, k, x, u, closed):
 @add_crossings.register(BallData)
 @kernel
 def _add_crossings(balls, curve, end, crossings, n):
-    """Add where a curve meets the spheres."""
+    """Append the parameters where a curve meets the spheres; return their number."""
     for k in range(len(balls.radii)):
         n = add_sphere_crossings(curve, balls.centres[k], balls.radii[k], end, crossings, n)
     return n

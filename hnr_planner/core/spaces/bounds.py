@@ -8,14 +8,14 @@ from hnr_planner.core.kernels.kernel import kernel
 import numpy as np
 from numpy.typing import ArrayLike
 
-#: Kernels need coordinates that resolve this fraction of each side: chords end in their rounding.
+#: Coordinates in the kernel frame resolve this fraction of each side.
 FINEST = 1e-10
 #: The caller's coordinates must resolve this fraction of each side, or the space is refused.
 COARSEST = 1e-6
 
 
 def check_bounds(name: str, lower: Floats, upper: Floats) -> None:
-    """Raise SpaceError unless bounds (dim,) are finite, have an inside and are resolved."""
+    """Raise SpaceError unless bounds (dim,) are finite, not empty, and resolved by floats."""
     if not (np.isfinite(lower).all() and np.isfinite(upper).all()):
         raise SpaceError(f'{name} must be bounded, its bounds are {_words(lower, upper)}')
     if not (lower < upper).all():
@@ -41,7 +41,7 @@ def check_corners(lower: ArrayLike, upper: ArrayLike) -> tuple[Floats, Floats]:
 
 def kernel_origin(lower: Floats, upper: Floats) -> Floats | None:
     """
-    Return the origin (dim,) of the kernel frame of a space with these bounds; None for 0.
+    Return the origin (dim,) of the kernel frame of a space with these bounds; None for zero.
 
     A coordinate that does not resolve ``FINEST`` of its side is counted from the middle of the
     bounds, the others from 0. Then the subtraction of the origin is exact for points in the bounds
@@ -52,7 +52,7 @@ def kernel_origin(lower: Floats, upper: Floats) -> Floats | None:
 
 
 def in_words(vector: Floats) -> str:
-    """Return a vector (dim,) for a repr: short numbers, and the first and last two of many."""
+    """Format a vector (dim,) for a repr: short numbers, of many the first and last two."""
     return np.array2string(
         vector, separator=', ', threshold=6, edgeitems=2, formatter={'float_kind': '{:g}'.format}
     )

@@ -30,7 +30,7 @@ class BoxData(NamedTuple):
     lower, upper : (k, dim)
         Corners of the boxes.
     max_gap : float
-        Longest gap between two boxes that a ray passes.
+        Longest gap between two boxes that a ray can cross.
 
     """
 
@@ -67,20 +67,20 @@ class BoxSpace(Space):
 
     @property
     def bounds(self) -> tuple[Floats, Floats]:
-        """Lower and upper corner (dim,)."""
+        """Lower and upper corner (dim,), caller's frame."""
         return self.lower.copy(), self.upper.copy()
 
     def compiled_at(self, origin: Floats | None) -> BoxData:
-        """Return the compiled box in the caller's frame moved to ``origin`` (dim,); None for 0."""
+        """Return the compiled box in the caller's frame, its origin moved to ``origin`` (dim,)."""
         shift = np.zeros(self.dim) if origin is None else origin
         return BoxData((self.lower - shift)[np.newaxis], (self.upper - shift)[np.newaxis], 0.0)
 
     def covers_box(self, lower: Floats, upper: Floats) -> bool:
-        """Return whether the other box lies in this one, faces included."""
+        """Return whether the box between two corners (dim,) lies in this one, faces included."""
         return bool((self.lower <= lower).all() and (upper <= self.upper).all())
 
     def why_not_free(self, point: ArrayLike) -> str:
-        """Return in words why ``point`` (dim,) is not free."""
+        """Return the reason why ``point`` (dim,) is not free."""
         x = check_point('point', point, self.dim)
         i = int(np.argmax(np.maximum(self.lower - x, x - self.upper)))
         return (
@@ -132,7 +132,7 @@ def _piece_span(boxes, k, x, u, closed):
 @add_crossings.register(BoxData)
 @kernel
 def _add_crossings(boxes, curve, end, crossings, n):
-    """Add where a curve meets the planes of the faces."""
+    """Append the parameters where a curve meets planes of faces; return their number."""
     for k in range(len(boxes.lower)):
         for i in range(boxes.lower.shape[1]):
             f = coordinate(curve, i)

@@ -1,8 +1,8 @@
 """
-Functions of the user that compiled code calls by address: an address is data to a kernel.
+Functions of the user that compiled code calls by address, which is data to a kernel.
 
 A function compiled by numba costs no more than a call. One in Python takes the interpreter's lock
-for each answer, a few microseconds; what it raises ends the kernel with an ``OracleError``. In
+for each call, a few microseconds; an exception ends the kernel with an ``OracleError``. In
 both cases kernels are compiled, and cached on disk, once for all functions.
 """
 
@@ -18,7 +18,7 @@ from numba.core.dispatcher import Dispatcher
 from numba.extending import intrinsic, overload
 import numpy as np
 
-#: A function gets numbers, their count, and memory for its answer; it returns 0 or ``FAILED``.
+#: Signature: numbers, their count, and an array for the result; it returns 0 or ``FAILED``.
 _C_TYPE = ctypes.CFUNCTYPE(ctypes.c_int32, ctypes.c_void_p, ctypes.c_int64, ctypes.c_void_p)
 _NATIVE = types.int32(types.CPointer(types.float64), types.int64, types.CPointer(types.float64))
 #: Bytes of a number.
@@ -30,7 +30,7 @@ _raised = threading.local()
 
 
 class OracleError(HnrError):
-    """A function of the user's that a space calls raised an error, which is the cause of this."""
+    """A function of the user that a space calls has raised an exception: the cause of this one."""
 
     def __init__(self) -> None:
         self.__cause__ = getattr(_raised, 'error', None)
@@ -98,7 +98,7 @@ def _native(function: Dispatcher, n_arrays: int) -> Any:
 
 
 def ask(at: int, numbers: Any, result: Any) -> int:
-    """Call a function by its address and write its answer to ``result`` (1,); 0, or FAILED."""
+    """Call a function by address, write its result to ``result`` (1,); return 0, or FAILED."""
     return _C_TYPE(at)(numbers.ctypes.data, len(numbers), result.ctypes.data)
 
 

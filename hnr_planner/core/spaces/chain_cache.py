@@ -1,10 +1,10 @@
 """
-The cache of a chain: its position, and what a space keeps about it from one step to the next.
+The cache of a chain: its position, and what a space stores for it between steps.
 
-A walk asks for the chord through its point and then moves along it, again and again. A space that
-keeps what it computed answers the next question with less work: a polytope keeps the distances to
-its planes, and updates only those that a step changes. It registers its own kernels for the
-functions of this module; every other space caches nothing.
+A walk alternately computes the chord through its point and moves along it. A space may reuse
+results of the step before: a polytope stores the distances to its planes, and updates only those
+that a step changes. It registers its own kernels for the functions of this module; every other
+space caches nothing.
 """
 
 from typing import Any, NamedTuple
@@ -14,8 +14,8 @@ from hnr_planner.core.kernels.dispatch import dispatched
 from hnr_planner.core.kernels.kernel import inlined, kernel
 from hnr_planner.core.spaces.primitives import chord, CompiledSpace, contains
 
-#: Steps of a chain after which its cache is computed anew, so that rounding does not accumulate.
-#: They count from the chain's beginning: a run that was stopped goes on to the same last bit.
+#: Steps of a chain after which its cache is recomputed, so that rounding does not accumulate. They
+#: count from the chain's beginning, so that a resumed run gives the same draws to the last bit.
 REFRESH = 1024
 #: Value of ``axis`` for a direction that is not along an axis.
 NO_AXIS = -1
@@ -30,7 +30,7 @@ class ChainCache(NamedTuple):
     x : (dim,)
         The chain's point.
     y, back : (dim,)
-        Memory for the next point, and for the opposite direction.
+        Work arrays for the next point, and for the opposite direction.
 
     """
 
@@ -42,7 +42,7 @@ class ChainCache(NamedTuple):
 @dispatched
 @kernel
 def memory_size(space: CompiledSpace, dim: int) -> int:
-    """Return the number of floats that ``space`` keeps for each chain."""
+    """Return the number of floats that ``space`` stores for each chain."""
     return 2 * dim
 
 
@@ -52,8 +52,8 @@ def open_cache(space: CompiledSpace, x: Floats, memory: Floats) -> Any:
     """
     Return the cache of a chain: views of its point ``x`` (dim,) and of its ``memory``.
 
-    The first two fields are ``x``, which the other kernels move, and ``y`` (dim,), memory for
-    another point.
+    Its first two fields are ``x``, which the other kernels move, and ``y`` (dim,), a work array
+    for the next point.
     """
     dim = len(x)
     return ChainCache(x, memory[:dim], memory[dim:])
@@ -62,7 +62,7 @@ def open_cache(space: CompiledSpace, x: Floats, memory: Floats) -> Any:
 @dispatched
 @inlined
 def refresh(space: CompiledSpace, cache: Any) -> None:
-    """Compute the cache anew, from the chain's point alone."""
+    """Recompute the cache from the chain's point alone."""
 
 
 @dispatched
@@ -84,7 +84,7 @@ def move_along(space: CompiledSpace, cache: Any, u: Floats, axis: int, s: float)
     """
     Move to ``x + s u`` on the line of the last chord; return whether the chain moved.
 
-    The chain stays where ``x + s u`` rounds to a point that is not free.
+    The chain does not move where ``x + s u`` rounds to a point that is not free.
     """
     for i in range(len(u)):
         cache.y[i] = cache.x[i] + s * u[i]

@@ -1,11 +1,11 @@
 """
 Exact distance to the occupied squares of a grid, from points and along paths.
 
-Squares are searched in rings of cells around the middle of a short piece of the path. The first
-ring is the one in which the distance field has an occupied cell; the last is the one beyond which
-no square can be nearer to the piece than the nearest found so far.
+Squares are searched in rings of cells around the middle of a short piece of the path. The distance
+field gives the first ring with an occupied cell; the search ends with the ring beyond which no
+square can be nearer to the piece than the nearest found so far.
 
-Kernel frame: ``wall_distance`` (rows, cols) is the distance in king's moves to the nearest
+Kernel frame: ``wall_distance`` (rows, cols) is the Chebyshev distance [cells] to the nearest
 occupied cell, and lengths are in cells.
 """
 

@@ -1,4 +1,4 @@
-"""Checks and words that composed spaces share."""
+"""Checks of the members of composed spaces, and their summary in a repr."""
 
 from collections.abc import Iterable
 from itertools import groupby

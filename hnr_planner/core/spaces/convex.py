@@ -1,9 +1,9 @@
 """
-Convex pieces: sets that cut one interval out of every line.
+Convex pieces: sets whose intersection with every line is one interval.
 
-The data of such a space holds one piece or several, and means their union: pieces of one kind lie
-in the same arrays, so that a union of many is one short loop. Each array has one row for each
-piece, and the last field, ``max_gap``, is the longest gap between two pieces that a ray passes. A
+Such a compiled space is the union of one piece or several of one kind, in common arrays, so that a
+union of many is one short loop. Each array has one row for each piece, and the last field,
+``max_gap``, is the longest gap between two pieces that a ray can cross. A
 type decorated with ``convex`` registers kernels for ``count_pieces``, ``piece_contains`` and
 ``piece_span``, and the primitives follow from them.
 """
@@ -65,12 +65,12 @@ def convex(data_type: DataType) -> DataType:
 
 
 def is_convex(data: CompiledSpace) -> bool:
-    """Return whether a compiled space holds convex pieces, which ``pack`` takes."""
+    """Return whether a compiled space consists of convex pieces, which ``pack`` can join."""
     return piece_span.knows(data)
 
 
 def pack(pieces: Sequence[Any], max_gap: float) -> Any:
-    """Return compiled spaces of one type as one, which closes gaps up to ``max_gap``."""
+    """Return the union of compiled spaces of one type, with gaps up to ``max_gap`` closed."""
     fields = zip(*(data[:-1] for data in pieces), strict=True)
     return type(pieces[0])(*map(np.concatenate, fields), max_gap)
 
@@ -98,7 +98,7 @@ def _any_contains(space, x, closed):
 
 @kernel
 def _first_exit(space, x, u, t, horizon):
-    """Go to the end of a piece that contains the line at ``t``, and on in those that continue."""
+    """Follow the line to the end of a piece, and on in pieces that contain that end."""
     s = t
     for k in range(count_pieces(space)):
         lower, upper = piece_span(space, k, x, u, False)
@@ -130,7 +130,7 @@ def _first_entry(space, x, u, t):
 
 @kernel
 def _chord(space, x, u, back):
-    """Take both ends from a single piece; of several, go from piece to piece both ways."""
+    """Intersect the line with a single piece; with several, follow it in both directions."""
     if count_pieces(space) > 1:
         return -first_exit(space, x, back, 0.0, math.inf), first_exit(space, x, u, 0.0, math.inf)
     lower, upper = piece_span(space, 0, x, u, False)
@@ -139,7 +139,7 @@ def _chord(space, x, u, back):
 
 @kernel
 def _gap(space, x, u, back):
-    """Cut the line at every piece, before and behind ``x``."""
+    """Return the interval (lower, upper) of the line around ``x`` that touches no piece."""
     lower, upper = -math.inf, math.inf
     for k in range(count_pieces(space)):
         first, last = piece_span(space, k, x, u, True)

@@ -46,19 +46,19 @@ class DifferenceData(NamedTuple):
 
 class DifferenceSpace(Space):
     """
-    The points of a space outside some others, which are taken away with their boundaries.
+    The points of a space outside of others, which are removed together with their boundaries.
 
     Parameters
     ----------
     base : Space
-        The space from which the others are taken away.
+        The space from which the others are removed.
     *removed : Space
-        What is taken away: at least one space, of the same dimension.
+        The spaces that are removed: at least one, of the same dimension.
 
     Raises
     ------
     SpaceError
-        When the spaces do not fit, or it is certain that nothing is left.
+        When the dimensions differ, or a removed space is known to cover the base.
 
     Attributes
     ----------
@@ -86,7 +86,7 @@ class DifferenceSpace(Space):
         return self.compiled_at(self._kernel_origin)
 
     def compiled_at(self, origin: Floats | None) -> DifferenceData:
-        """Return the compiled space in the caller's frame moved to ``origin`` (dim,); None: 0."""
+        """Return the compiled space in the caller's frame moved to ``origin`` (dim,), or not."""
         removed = UnionSpace(*self.removed)
         return DifferenceData(self.base.compiled_at(origin), removed.compiled_at(origin))
 
@@ -97,12 +97,12 @@ class DifferenceSpace(Space):
 
     @property
     def typical_clearance(self) -> float:
-        """Typical clearance of the base, less by what is removed, in the caller's units."""
+        """Typical clearance of the base, less for each removed space, in the caller's units."""
         of_base = self.base.typical_clearance * self.base.scale
         return of_base / (1.0 + len(self.removed)) ** (1.0 / self.dim)
 
     def why_not_free(self, point: ArrayLike) -> str:
-        """Return in words why ``point`` (dim,) is not free."""
+        """Return the reason why ``point`` (dim,) is not free."""
         x = check_point('point', point, self.dim)
         if not self.base.contains(x):
             return self.base.why_not_free(x)
@@ -118,21 +118,21 @@ first_exit_on_curve.register(DifferenceData)(first_exit_between_surfaces)
 @contains.register(DifferenceData)
 @kernel
 def _contains(difference, x):
-    """Return whether ``x`` is free in the base and does not touch what is removed."""
+    """Return whether ``x`` is free in the base and does not touch the removed spaces."""
     return contains(difference.base, x) and not touches(difference.removed, x)
 
 
 @touches.register(DifferenceData)
 @kernel
 def _touches(difference, x):
-    """Return whether ``x`` touches the base and is not inside what is removed."""
+    """Return whether ``x`` touches the base and is not inside the removed spaces."""
     return touches(difference.base, x) and not contains(difference.removed, x)
 
 
 @first_exit.register(DifferenceData)
 @kernel
 def _first_exit(difference, x, u, t, horizon):
-    """Leave the base or touch what is removed, whichever is first."""
+    """Return the earlier of the exit from the base and the entry into the removed spaces."""
     end = first_exit(difference.base, x, u, t, horizon)
     return min(end, first_entry(difference.removed, x, u, t)) if end > t else t
 
@@ -140,7 +140,7 @@ def _first_exit(difference, x, u, t, horizon):
 @first_entry.register(DifferenceData)
 @kernel
 def _first_entry(difference, x, u, t):
-    """Enter the base and leave what is removed in turn, until neither moves the line on."""
+    """Alternate entries into the base and exits from removed spaces, until neither advances."""
     s = first_entry(difference.base, x, u, t)
     while s < math.inf:
         out = first_exit(difference.removed, x, u, s, math.inf)
@@ -153,7 +153,7 @@ def _first_entry(difference, x, u, t):
 @chord.register(DifferenceData)
 @kernel
 def _chord(difference, x, u, back):
-    """Intersect the chord in the base with the gap between what is removed."""
+    """Intersect the chord in the base with the gap between the removed spaces."""
     lower, upper = chord(difference.base, x, u, back)
     first, last = gap(difference.removed, x, u, back)
     return max(lower, first), min(upper, last)
@@ -162,14 +162,14 @@ def _chord(difference, x, u, back):
 @component.register(DifferenceData)
 @kernel
 def _component(difference, x):
-    """Return the component of the base: what is removed may split it, but joins none."""
+    """Return the component of the base: removed spaces may split components, but join none."""
     return component(difference.base, x) if contains(difference, x) else 0
 
 
 @add_crossings.register(DifferenceData)
 @kernel
 def _add_crossings(difference, curve, end, crossings, n):
-    """Add the crossings of the base and of what is removed."""
+    """Append the parameters where a curve meets any surface of both; return their number."""
     n = add_crossings(difference.base, curve, end, crossings, n)
     return add_crossings(difference.removed, curve, end, crossings, n)
 

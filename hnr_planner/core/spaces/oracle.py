@@ -1,4 +1,4 @@
-"""A space that is known only by a function of the user's."""
+"""A space defined by a function of the user that tests points, or returns chords."""
 
 from collections.abc import Callable
 import math
@@ -17,16 +17,16 @@ from numpy.typing import ArrayLike
 
 class OracleSpace(Space):
     """
-    The points of a box that a function says are free.
+    The points of a box for which a function returns that they are free.
 
-    Lines are searched: a point is tested at every ``resolution`` of the way, and where the answer
-    changes the change is located by bisection. So a gap or a wall that is thinner than the
-    resolution along a line may be missed, and a path may lead through it. Whether the boundary is
-    free is what the function says.
+    Lines are searched: a point is tested at every ``resolution`` along the line, and a change of
+    the result is located by bisection. So a gap or a wall that is thinner than the resolution
+    along a line may be missed, and a path may lead through it. The function decides whether the
+    boundary is free.
 
     A function compiled by ``numba.njit`` is called as fast as any compiled code. One in Python
-    costs some microseconds for each point; it is called from many threads, one at a time, and what
-    it raises comes out as the cause of an ``OracleError``. A space can be pickled when its
+    costs some microseconds for each point; it is called from many threads, one at a time, and an
+    exception that it raises is the cause of an ``OracleError``. A space can be pickled when its
     function can.
 
     Parameters
@@ -71,7 +71,7 @@ class OracleSpace(Space):
         resolution: float,
     ) -> 'OracleSpace':
         """
-        Build the space whose chords a function knows.
+        Build a space from a function that returns chords.
 
         Parameters
         ----------
@@ -81,8 +81,8 @@ class OracleSpace(Space):
         lower, upper : (dim,)
             Corners of a box: nothing outside is free.
         resolution : float
-            Walks and planners do not search. This is the distance between points that are tested
-            where a line comes in from outside: in a space that is taken away from another.
+            Distance between points that are tested where a line enters from outside, which only
+            happens when this space is removed from another. Chords need no search.
 
         """
         space = cls.__new__(cls)
@@ -124,16 +124,16 @@ class OracleSpace(Space):
         self._build(*state['arguments'])
 
     def __repr__(self) -> str:
-        """Name the resolution, which is the accuracy of the answers."""
+        """Name the dimension, and the resolution of the search."""
         return f'OracleSpace(dim={self.dim}, resolution={self.resolution:g})'
 
     @property
     def bounds(self) -> tuple[Floats, Floats]:
-        """Lower and upper corner (dim,)."""
+        """Lower and upper corner (dim,), caller's frame."""
         return self._compiled.data.lower.copy(), self._compiled.data.upper.copy()
 
     def compiled_at(self, origin: Floats | None) -> OracleData:
-        """Return the compiled space in the caller's frame moved to ``origin`` (dim,); None: 0."""
+        """Return the compiled space in the caller's frame moved to ``origin`` (dim,), or not."""
         data = self._compiled.data
         if origin is None:
             return data
@@ -142,7 +142,7 @@ class OracleSpace(Space):
         )
 
     def why_not_free(self, point: ArrayLike) -> str:
-        """Return in words why ``point`` (dim,) is not free."""
+        """Return the reason why ``point`` (dim,) is not free."""
         return 'outside the bounds, or the function says that it is not free'
 
 
@@ -156,7 +156,7 @@ def _check_function(contains: Any, point: Floats) -> None:
 
 
 def _membership(chord: Any) -> Callable[[Floats], bool]:
-    """Return the function that knows a free point by its chord along the first axis."""
+    """Return the test of membership of a chord function: a chord above 0 along the first axis."""
     if not callable(chord):
         raise SpaceError(f'chord must be a function, got {chord!r}')
 

@@ -1,8 +1,8 @@
 """
 Compiled spaces that call functions of the user: chords by search, or from a function.
 
-Where only the membership of points is known, a line is searched: a point is tested at every
-``resolution`` of the way, and where the answer changes the change is located by bisection.
+Where only points can be tested, a line is searched: a point is tested at every ``resolution``
+along the line, and a change of the result is located by bisection.
 """
 
 from collections.abc import Callable
@@ -26,12 +26,12 @@ import numpy as np
 
 class OracleData(NamedTuple):
     """
-    A compiled space that calls functions.
+    A compiled space that calls functions of the user by address.
 
     Attributes
     ----------
     lower, upper : (dim,)
-        Bounds: functions are not asked about points outside.
+        Bounds: functions are not called for points outside.
     origin : (dim,)
         Origin of the kernel frame in the frame of the functions.
     resolution : float
@@ -107,16 +107,16 @@ class OracleFunctions:
 @touches.register(OracleData)
 @kernel
 def _contains(oracle, x):
-    """Return whether ``x`` is free; the boundary is what the function says it is."""
+    """Return whether the function returns that ``x`` is free, also on the boundary."""
     return _is_in(oracle, x, x, 0.0, np.empty(len(x) + 1))
 
 
 @first_exit.register(OracleData)
 @kernel
 def _first_exit(oracle, x, u, t, horizon):
-    """Ask the chord where a function knows it; else search the line."""
-    room = np.empty(len(x) + 1)
-    if not _is_in(oracle, x, u, t, room):
+    """Return the exit of the line from the chord function, or else by search."""
+    work = np.empty(len(x) + 1)
+    if not _is_in(oracle, x, u, t, work):
         return t
     _, last = box_span(oracle.lower, oracle.upper, x, u)
     if oracle.chord != 0:
@@ -124,8 +124,8 @@ def _first_exit(oracle, x, u, t, horizon):
     step, before = oracle.resolution / norm(u), t
     while before <= horizon:
         s = min(before + step, last)
-        if s == last or not _is_in(oracle, x, u, s, room):
-            return _bisect(oracle, x, u, before, s, room)
+        if s == last or not _is_in(oracle, x, u, s, work):
+            return _bisect(oracle, x, u, before, s, work)
         before = s
     return before
 
@@ -134,15 +134,15 @@ def _first_exit(oracle, x, u, t, horizon):
 @kernel
 def _first_entry(oracle, x, u, t):
     """Search the line within the bounds for a point that is free."""
-    room = np.empty(len(x) + 1)
-    if _is_in(oracle, x, u, t, room):
+    work = np.empty(len(x) + 1)
+    if _is_in(oracle, x, u, t, work):
         return t
     first, last = box_span(oracle.lower, oracle.upper, x, u)
     step, before = oracle.resolution / norm(u), max(t, first)
     while before < last:
         s = min(before + step, last)
-        if _is_in(oracle, x, u, s, room):
-            return _bisect(oracle, x, u, before, s, room)
+        if _is_in(oracle, x, u, s, work):
+            return _bisect(oracle, x, u, before, s, work)
         before = s
     return math.inf
 
@@ -150,7 +150,7 @@ def _first_entry(oracle, x, u, t):
 @segment_is_free.register(OracleData)
 @kernel
 def _segment_is_free(oracle, a, b):
-    """Ask the function of two points where there is one; else compare with the chord."""
+    """Call the function of two points where there is one; else compare with the chord."""
     if oracle.motion != 0:
         n = len(a)
         ends, answer = np.empty(2 * n), np.empty(1)
@@ -166,15 +166,15 @@ def _segment_is_free(oracle, a, b):
 
 
 @kernel
-def _bisect(oracle, x, u, before, after, room):
-    """Return the first parameter found at which the answer is no longer that at ``before``."""
-    was_in = _is_in(oracle, x, u, before, room)
+def _bisect(oracle, x, u, before, after, work):
+    """Bisect between ``before`` and ``after``; return a parameter just after the change."""
+    was_in = _is_in(oracle, x, u, before, work)
     closeness = oracle.closeness / norm(u)
     while after - before > closeness:
         middle = before + (after - before) / 2.0
         if not before < middle < after:
             break
-        if _is_in(oracle, x, u, middle, room) == was_in:
+        if _is_in(oracle, x, u, middle, work) == was_in:
             before = middle
         else:
             after = middle
@@ -182,19 +182,19 @@ def _bisect(oracle, x, u, before, after, room):
 
 
 @kernel
-def _is_in(oracle, x, u, s, room):
+def _is_in(oracle, x, u, s, work):
     """
     Return whether ``x + s u`` lies within the bounds and is free.
 
-    ``room`` (dim + 1,) is working memory for the point and the answer.
+    ``work`` (dim + 1,) is a work array for the point and the result.
     """
     n = len(x)
     for i in range(n):
-        room[i] = x[i] + s * u[i] if s != 0.0 else x[i]
-        if not oracle.lower[i] < room[i] < oracle.upper[i]:
+        work[i] = x[i] + s * u[i] if s != 0.0 else x[i]
+        if not oracle.lower[i] < work[i] < oracle.upper[i]:
             return False
-        room[i] += oracle.origin[i]
-    point, answer = room[:n], room[n:]
+        work[i] += oracle.origin[i]
+    point, answer = work[:n], work[n:]
     if ask(oracle.membership, point, answer) != 0:
         raise OracleError
     return answer[0] != 0.0
@@ -202,7 +202,7 @@ def _is_in(oracle, x, u, s, room):
 
 @kernel
 def _ask_chord(oracle, x, u, t):
-    """Return how far the ray from ``x + t u`` along ``u`` is free, in units of ``|u|``."""
+    """Return the free length of the ray from ``x + t u`` along ``u``, in units of ``|u|``."""
     n = len(x)
     line, answer = np.empty(2 * n), np.empty(1)
     for i in range(n):

@@ -1,12 +1,12 @@
 """
-Primitives of a compiled space: the questions that walks and planners ask.
+Primitives of a compiled space: the kernels from which walks and planners are built.
 
-A compiled space is a NamedTuple of arrays whose type registers a kernel for each primitive. The
-primitives with a body here are derived from the others; a type overrides them where it has a
-faster or more exact answer.
+A compiled space is a NamedTuple of arrays whose type registers a kernel for each primitive. Those
+with a body here are defaults in terms of the others; a type overrides them where it can compute
+them faster or more exactly.
 
-``first_exit`` refers to the open set and ``first_entry`` to its closure: what a difference takes
-away is closed, so that free space stays open.
+``first_exit`` refers to the open set and ``first_entry`` to its closure: the spaces that a
+difference removes are closed, so that free space is open.
 
 Points ``x`` and directions ``u`` are arrays (dim,) in the frame of the compiled space. Lines are
 written ``x + s u``: a parameter ``s`` is in units of ``|u|``.
@@ -57,8 +57,8 @@ def first_exit(space: CompiledSpace, x: Floats, u: Floats, t: float, horizon: fl
     """
     Return the first parameter ``s >= t`` at which the line ``x + s u`` leaves ``space``.
 
-    It is ``t`` itself where the line is outside at ``t``. The search may stop once the line is
-    known to stay inside up to ``horizon``: then any value above ``horizon`` may be returned.
+    It is ``t`` itself where the line is outside at ``t``. Where the line is inside up to
+    ``horizon``, any value above ``horizon`` may be returned.
     """
     raise NotImplementedError
 
@@ -102,8 +102,8 @@ def component(space: CompiledSpace, x: Floats) -> int:
     """
     Return the number of the component that holds ``x``, from 1; 0 where ``x`` is not free.
 
-    No path leads from one number to another. A space that does not know its components gives all
-    free points the same number.
+    No path joins points with different numbers. A space that cannot distinguish its components
+    gives all free points the same number.
     """
     return 1 if contains(space, x) else 0
 
@@ -111,7 +111,7 @@ def component(space: CompiledSpace, x: Floats) -> int:
 @dispatched
 @kernel
 def segment_is_free(space: CompiledSpace, a: Floats, b: Floats) -> bool:
-    """Return whether the closed segment a-b is free: whether the chord ends beyond ``b``."""
+    """Return whether every point of the closed segment from ``a`` to ``b`` (dim,) is free."""
     if not (contains(space, a) and contains(space, b)):
         return False
     u = b - a
@@ -127,7 +127,7 @@ def flood_path(
     Return a free path (m, dim) from ``start`` into the goal region, wherever there is one.
 
     It may be long. It ends at ``goal`` for a ``goal_radius`` of 0, else at a point ``margin`` or
-    more inside the space. (0, dim) where there is none, or the space does not know.
+    more inside the space. (0, dim) where there is none, or the space has no flood fill.
     """
     return np.empty((0, len(start)))
 
@@ -143,7 +143,7 @@ def are_free(space, points):
 
 @kernel
 def contains_around(space, x, slack):
-    """Return whether ``x`` is free, and stays so when any one coordinate changes by ``slack``."""
+    """Return whether ``x`` is free, also when any one of its coordinates changes by ``slack``."""
     y = x.copy()
     for i in range(len(x)):
         for offset in (-slack, slack):

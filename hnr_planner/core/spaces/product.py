@@ -21,7 +21,7 @@ from hnr_planner.core.spaces.space import Space
 import numpy as np
 from numpy.typing import ArrayLike
 
-#: Number of components that no factor exceeds.
+#: Bound on the number of components of a factor.
 COMPONENTS_MAX = 2**31
 
 
@@ -80,7 +80,7 @@ class ProductSpace(Space):
         return self.compiled_at(self._kernel_origin)
 
     def compiled_at(self, origin: Floats | None) -> CompiledSpace:
-        """Return the compiled product in the caller's frame moved to ``origin``; None for 0."""
+        """Return the compiled product in the caller's frame moved to ``origin`` (dim,), or not."""
         compiled = [
             factor.compiled_at(None if origin is None else origin[own])
             for factor, own in zip(self.factors, self._slices, strict=True)
@@ -92,7 +92,7 @@ class ProductSpace(Space):
 
     @property
     def bounds(self) -> tuple[Floats, Floats]:
-        """Lower and upper corner (dim,)."""
+        """Lower and upper corner (dim,), caller's frame."""
         lower, upper = zip(*(factor.bounds for factor in self.factors), strict=True)
         return np.concatenate(lower), np.concatenate(upper)
 
@@ -109,7 +109,7 @@ class ProductSpace(Space):
         )
 
     def why_not_free(self, point: ArrayLike) -> str:
-        """Return in words why ``point`` (dim,) is not free."""
+        """Return the reason why ``point`` (dim,) is not free."""
         x = check_point('point', point, self.dim)
         for k, (factor, own) in enumerate(zip(self.factors, self._slices, strict=True)):
             if not factor.contains(x[own]):
@@ -155,7 +155,7 @@ def _first_exit(product, x, u, t, horizon):
 @first_entry.register(ProductData)
 @kernel
 def _first_entry(product, x, u, t):
-    """Enter the two factors in turn, until the line touches both."""
+    """Alternate entries into the two factors, until the line touches both."""
     k = product.split
     moves, other_moves = u[:k].any(), u[k:].any()
     if not (moves or touches(product.one, x[:k])):

@@ -15,11 +15,11 @@ from hnr_planner.core.spaces.space import Space
 import numpy as np
 from numpy.typing import ArrayLike
 
-#: Strongest stretch and compression of which coordinates resolve the image.
+#: Largest stretch or compression for which coordinates resolve the image.
 STRETCH_MAX = 1e4
-#: Rounding of a coordinate mapped back, as a fraction of its terms, with room to spare.
+#: Bound on the rounding of a coordinate mapped back, as a fraction of its terms.
 ROUNDING = 32 * 2.0**-53
-#: Distance around the bounds up to which a line is followed, as a fraction of their sides.
+#: Distance beyond the bounds up to which a line is followed, as a fraction of their sides.
 AROUND = 1e-6
 
 
@@ -38,9 +38,9 @@ class ShearedData(NamedTuple):
     bend : float
         The last coordinate is moved by this times the square of the first, from the centre.
     rounding : float
-        Largest rounding error of 0 in an inequality.
+        Largest rounding error of an inequality that is exactly 0.
     begin, end : (dim,)
-        Corners of a box around the image, with room to spare.
+        Corners of a box around the image, slightly larger than its bounds.
 
     """
 
@@ -111,7 +111,7 @@ class ShearedSpace(Space):
         return f'ShearedSpace(base={self.base!r}, bend={self.bend:g})'
 
     def compiled_at(self, origin: Floats | None) -> ShearedData:
-        """Return the compiled space in the caller's frame moved to ``origin`` (dim,); None: 0."""
+        """Return the compiled space in the caller's frame moved to ``origin`` (dim,), or not."""
         shift = np.zeros(self.dim) if origin is None else origin
         lower, upper = (corner - shift for corner in self.base.bounds)
         rim = AROUND * (self._upper - self._lower)
@@ -129,12 +129,12 @@ class ShearedSpace(Space):
 
     @property
     def bounds(self) -> tuple[Floats, Floats]:
-        """Lower and upper corner (dim,)."""
+        """Lower and upper corner (dim,), caller's frame."""
         return self._lower.copy(), self._upper.copy()
 
     @property
     def typical_clearance(self) -> float:
-        """Typical clearance of the base where it is compressed most."""
+        """Typical clearance of the base, reduced by the largest compression."""
         return self.base.typical_clearance / self.shrink
 
     def image(self, points: ArrayLike) -> Floats:
@@ -146,7 +146,7 @@ class ShearedSpace(Space):
         return self._moved(points, -self.bend)
 
     def why_not_free(self, point: ArrayLike) -> str:
-        """Return in words why ``point`` (dim,) is not free."""
+        """Return the reason why ``point`` (dim,) is not free."""
         reason = self.base.why_not_free(self.preimage(check_point('point', point, self.dim)))
         return f'mapped back, {reason}'
 
@@ -193,7 +193,7 @@ def _largest_stretch(base: BallSpace | BoxSpace, bend: float) -> float:
 
 
 def _rounding(lower: Floats, upper: Floats, radius: float, bend: float) -> float:
-    """Return the largest rounding error of 0 in an inequality: a length, its square for a ball."""
+    """Return the largest rounding error of an inequality at 0: a length, squared for a ball."""
     half = float(upper[0] - lower[0]) / 2.0
     size = float(np.abs([lower, upper]).max()) + abs(bend) * half**2
     return ROUNDING * size * (half if radius > 0.0 else 1.0)
@@ -243,7 +243,7 @@ def _first_exit(sheared, x, u, t, horizon):
 @first_entry.register(ShearedData)
 @kernel
 def _first_entry(sheared, x, u, t):
-    """Go on to where a violated inequality holds, until all hold."""
+    """Advance to where a violated inequality holds, until all hold."""
     first, last = box_span(sheared.begin, sheared.end, x, u)
     coefficients, rounding = np.empty(5), sheared.rounding
     s, k, held = max(t, first), 0, 0

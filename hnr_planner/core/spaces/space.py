@@ -1,12 +1,12 @@
 """
-The base class of spaces: open, bounded sets of free points that answer points and chords.
+The base class of spaces: open, bounded sets of free points, with membership and chords.
 
-Everything else is built on these answers. A Hit-and-Run step draws on a chord; a motion is free
-when the chord reaches beyond its end. The rules at the boundary are the same for every space:
+Everything else is built on these two. A Hit-and-Run step draws on a chord; a motion is free when
+the chord reaches beyond its end. The rules at the boundary are the same for every space:
 
 - obstacles are closed, free space is open: a point that touches an obstacle is not free;
 - ``lower < 0 < upper`` exactly when the point is free, otherwise the chord is ``Chord(0, 0)``;
-- what has to stop at a chord's end stops ``margin`` before it.
+- a motion that has to stop at a chord's end stops ``margin`` before it.
 """
 
 from abc import ABC, abstractmethod
@@ -28,13 +28,15 @@ from hnr_planner.core.spaces.transformed import shifted
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-#: Distance before a chord's end at which one stops, as a fraction of the bounds' diagonal.
+#: Distance before a chord's end at which a motion stops, as a fraction of the bounds' diagonal.
 MARGIN = 1e-9
-#: The same in roundings of the largest coordinate, for a space far from the origin.
+#: Least distance before a chord's end, in roundings of the largest coordinate, for a space far
+#: from the origin.
 MARGIN_ROUNDINGS = 8.0
-#: Steps along the diagonal in which a line is searched for its entry into a space of Python.
+#: Number of steps along the diagonal in which a line is searched for its entry into a Python
+#: space.
 ENTRY_STEPS = 1000
-#: An end of a chord is located to this fraction of the margin where it is searched.
+#: Error of a chord's end that is found by search, as a fraction of the margin.
 CLOSENESS = 1e-3
 
 _FUNCTIONS_LOCK = threading.Lock()
@@ -51,14 +53,14 @@ class Space(ABC):
     """
     An open, bounded set of free points in R^dim.
 
-    A space keeps what its kernels need in ``data``, in the *kernel frame*: the caller's frame, or
-    one that differs from it by a rigid motion and a scaling (a grid counts in cells, a space far
-    from the origin from its own middle). Searches run there; ``to_kernel`` and ``from_kernel``
+    A space stores the data of its kernels in ``data``, in the *kernel frame*: the caller's frame,
+    or one that differs from it by a rigid motion and a scaling (a grid counts in cells, a space
+    far from the origin from its own middle). Searches run there; ``to_kernel`` and ``from_kernel``
     convert points at the boundary of the package.
 
     A subclass in plain Python sets ``dim`` and overrides ``bounds``, ``contains`` and ``chord``,
-    and ``is_motion_valid`` where it knows better than its chords; kernels then call back these
-    methods. They are called from many threads, one at a time.
+    and ``is_motion_valid`` where that differs from a test of the chord; kernels then call back
+    these methods, from many threads, but one at a time.
 
     Attributes
     ----------
@@ -114,7 +116,7 @@ class Space(ABC):
         return f'{type(self).__name__}(dim={self.dim})'
 
     def __getstate__(self) -> dict[str, Any]:
-        """Leave out what is cached: it may hold addresses of functions in this process."""
+        """Leave out cached properties: they may hold addresses of functions in this process."""
         kind, state = type(self), self.__dict__.copy()
         assigned = {'data'} if kind.data is Space.data and '_functions' not in state else set()
         for name in self.__dict__.keys() - assigned:
@@ -123,19 +125,23 @@ class Space(ABC):
         return state
 
     def compiled_at(self, origin: Floats | None) -> CompiledSpace:
-        """Return the compiled space in the caller's frame moved to ``origin`` (dim,); None: 0."""
+        """
+        Return the compiled space in the caller's frame moved to another origin.
+
+        ``origin`` (dim,) is that origin in the caller's frame; None for no move.
+        """
         return shifted(self.data, self._kernel_origin, origin)
 
     @property
     def compiled(self) -> CompiledSpace:
-        """The compiled space in the caller's frame: what composed spaces are made of."""
+        """The compiled space in the caller's frame, of which composed spaces are made."""
         return self.compiled_at(None)
 
     def covers_box(self, lower: Floats, upper: Floats) -> bool:
         """
-        Return whether the closure is known to hold a box with two given corners (dim,).
+        Return whether the closure is known to contain the box between two corners (dim,).
 
-        False where that is not known: a space overrides this where it can tell.
+        False where that is unknown: a space overrides this where it can be computed.
         """
         return False
 
@@ -155,7 +161,7 @@ class Space(ABC):
     @property
     def margin(self) -> float:
         """
-        Distance from a chord's end at which one stops, kernel frame.
+        Distance before a chord's end at which a motion stops, kernel frame.
 
         A fraction ``MARGIN`` of the bounds' diagonal, but never less than the caller's coordinates
         resolve.
@@ -176,14 +182,14 @@ class Space(ABC):
         """
         Rough mean distance from a free point to the boundary, kernel frame.
 
-        Unless a space overrides it: that of a cube whose side is the shortest of the bounds.
+        The default is that of a cube whose side is the shortest of the bounds.
         """
         lower, upper = self.kernel_bounds
         return float((upper - lower).min()) / (2.0 * (self.dim + 1))
 
     @property
     def walls(self) -> NDArray[Any] | None:
-        """Array in which kernels measure the distance to walls; None without clearance."""
+        """Distance field (rows, cols) for kernels that compute clearances; None without one."""
         return None
 
     @property
@@ -193,7 +199,7 @@ class Space(ABC):
 
     @property
     def island_points(self) -> Floats | None:
-        """A point (k, dim) in each obstacle that a path can go round, kernel frame; or None."""
+        """A point (k, dim) in each obstacle with free space all around, kernel frame; or None."""
         return None
 
     def to_kernel(self, points: Floats) -> Floats:
@@ -213,14 +219,14 @@ class Space(ABC):
         return np.array(directions, order='C')
 
     def why_not_free(self, point: ArrayLike) -> str:
-        """Return in words why ``point`` (dim,) is not free, to follow the word 'is'."""
+        """Return the reason why ``point`` (dim,) is not free, to follow the word 'is'."""
         return 'not in the space'
 
     def region_reachable(self, start: ArrayLike, goal: ArrayLike, radius: float) -> bool:
         """
         Return whether a path leads from ``start`` (dim,) to within ``radius`` of ``goal`` (dim,).
 
-        True where that is not known.
+        True where that is unknown.
         """
         return True
 

@@ -17,7 +17,7 @@ import numpy as np
 
 class TransformedData(NamedTuple):
     """
-    A compiled space seen from another frame: a point ``x`` there is ``matrix x + offset`` here.
+    A compiled space in another frame: a point ``x`` of that frame is ``matrix x + offset``.
 
     Attributes
     ----------
@@ -36,7 +36,7 @@ class TransformedData(NamedTuple):
 
 
 def shifted(space: CompiledSpace, origin: Floats | None, new: Floats | None) -> CompiledSpace:
-    """Return a compiled space whose points are counted from ``new`` (dim,), not ``origin``."""
+    """Return a compiled space with its origin moved from ``origin`` to ``new`` (dim,)."""
     if origin is None and new is None:
         return space
     offset = (0.0 if new is None else new) - (0.0 if origin is None else origin)

@@ -37,7 +37,7 @@ class UnionData(NamedTuple):
     one, other : NamedTuple
         Compiled spaces in one frame.
     max_gap : float
-        Longest gap between the two that a ray passes.
+        Longest gap between the two that a ray can cross.
 
     """
 
@@ -50,8 +50,8 @@ class UnionSpace(Space):
     """
     The points of any of its members.
 
-    Members that abut are joined: gaps up to 1e-9 of the diagonal are closed, so that rooms which
-    end at .3 and begin at .1 + .2 let a ray through.
+    Members that abut are joined: gaps up to 1e-9 of the diagonal are closed, so that a ray passes
+    from a box that ends at .3 to one that begins at .1 + .2.
 
     Parameters
     ----------
@@ -85,7 +85,7 @@ class UnionSpace(Space):
 
     @property
     def bounds(self) -> tuple[Floats, Floats]:
-        """Lower and upper corner (dim,)."""
+        """Lower and upper corner (dim,), caller's frame."""
         lower, upper = zip(*(member.bounds for member in self.members), strict=True)
         return np.min(lower, axis=0), np.max(upper, axis=0)
 
@@ -95,11 +95,11 @@ class UnionSpace(Space):
         return float(np.mean([member.typical_clearance * member.scale for member in self.members]))
 
     def compiled_at(self, origin: Floats | None) -> CompiledSpace:
-        """Return the compiled union in the caller's frame moved to ``origin`` (dim,); None: 0."""
+        """Return the compiled union in the caller's frame moved to ``origin`` (dim,), or not."""
         return _joined(self._leaves(origin), self.margin)
 
     def _leaves(self, origin: Floats | None) -> Iterable[CompiledSpace]:
-        """Yield the compiled members, and those of members that are unions themselves."""
+        """Yield the compiled members, with unions among them replaced by their members."""
         for member in self.members:
             if isinstance(member, UnionSpace):
                 yield from member._leaves(origin)
@@ -107,20 +107,20 @@ class UnionSpace(Space):
                 yield member.compiled_at(origin)
 
     def covers_box(self, lower: Floats, upper: Floats) -> bool:
-        """Return whether one of the members is known to cover a box."""
+        """Return whether one member is known to contain the box between two corners (dim,)."""
         return any(member.covers_box(lower, upper) for member in self.members)
 
     def why_not_free(self, point: ArrayLike) -> str:
-        """Return in words why ``point`` (dim,) is not free."""
+        """Return the reason why ``point`` (dim,) is not free."""
         reasons = '; '.join(member.why_not_free(point) for member in self.members)
         return f'in none of the {len(self.members)} members of the union: {reasons}'
 
 
 def _joined(leaves: Iterable[CompiledSpace], max_gap: float) -> CompiledSpace:
-    """Return compiled spaces as one, with convex pieces of a kind in the same arrays."""
+    """Return the union of compiled spaces, with convex pieces of one type in common arrays."""
     kinds: dict[Any, list[CompiledSpace]] = {}
     for leaf in leaves:
-        # What cannot be packed is a kind of its own.
+        # A space that cannot be packed is a kind by itself.
         kinds.setdefault(type(leaf) if is_convex(leaf) else id(leaf), []).append(leaf)
     packed = [pack(kind, max_gap) if is_convex(kind[0]) else kind[0] for kind in kinds.values()]
     return reduce(lambda one, other: UnionData(one, other, max_gap), packed)
@@ -173,7 +173,7 @@ def _first_entry(union, x, u, t):
 @add_crossings.register(UnionData)
 @kernel
 def _add_crossings(union, curve, end, crossings, n):
-    """Add the crossings of both."""
+    """Append the parameters where a curve meets a surface of either; return their number."""
     n = add_crossings(union.one, curve, end, crossings, n)
     return add_crossings(union.other, curve, end, crossings, n)
 

@@ -1,8 +1,8 @@
 """
 A planar base with bounded speed, acceleration and curvature: a car, or a unicycle.
 
-Under constant controls it moves along a circular arc, whatever its speed does meanwhile: so the
-first contact with a boundary is found on the arc.
+Under constant controls it moves along a circular arc, whatever its speed, so the first contact
+with a boundary is found on the arc.
 """
 
 from dataclasses import dataclass
@@ -80,7 +80,7 @@ class Car(System):
         return abs(float(state[SPEED]))
 
     def lengths(self, states: Floats, controls: Floats, durations: Floats) -> Floats:
-        """Return how far states (k, 4) go in durations (k,), back and forth: (k,) [m]."""
+        """Return (k,) lengths [m] of motions of states (k, 4) in durations (k,) [s]."""
         before, pull = states[:, SPEED], controls[:, 0]
         after = before + pull * durations
         turns = before * after < 0.0
@@ -120,7 +120,7 @@ class Car(System):
 
 
 def _yaw(space: Space) -> float:
-    """Angle [rad] by which directions turn when they are converted to the kernel frame."""
+    """Return the angle [rad] by which directions turn when converted to the kernel frame."""
     x, y = vectors_to_kernel(space, np.array([1.0, 0.0]))
     return math.atan2(y, x)
 
@@ -129,10 +129,10 @@ def _yaw(space: Space) -> float:
 @kernel
 def _move(system, state, control, duration, end):
     """Move along an arc."""
-    way = duration * (state[SPEED] + duration * control[0] / 2.0)
+    arc_length = duration * (state[SPEED] + duration * control[0] / 2.0)
     arc = Arc(state[:HEADING], state[HEADING], control[1])
-    x, y = at(coordinate(arc, 0), way), at(coordinate(arc, 1), way)
-    end[HEADING] = state[HEADING] + control[1] * way
+    x, y = at(coordinate(arc, 0), arc_length), at(coordinate(arc, 1), arc_length)
+    end[HEADING] = state[HEADING] + control[1] * arc_length
     end[SPEED] = state[SPEED] + control[0] * duration
     end[X], end[Y] = x, y
 
@@ -140,7 +140,7 @@ def _move(system, state, control, duration, end):
 @contact.register(CarData)
 @kernel
 def _contact(system, space, state, control, duration):
-    """Find the contact before the speed changes its sign, or on the way back from there."""
+    """Return the time of contact before the speed changes its sign, or after that."""
     speed, acceleration = state[SPEED], control[0]
     rest = -speed / acceleration if acceleration != 0.0 else math.inf
     if not 0.0 < rest < duration:
@@ -156,14 +156,14 @@ def _contact(system, space, state, control, duration):
 
 @kernel
 def _one_way(space, state, control, duration):
-    """Find the contact while the speed keeps its sign: the arc length to it, then the time."""
-    way = duration * (state[SPEED] + duration * control[0] / 2.0)
-    heading = state[HEADING] if way >= 0.0 else state[HEADING] + math.pi
-    curvature = math.copysign(control[1], control[1] * way)
-    left = first_exit_on_curve(space, Arc(state[:HEADING], heading, curvature), abs(way))
-    if left > abs(way):
+    """Return the time of contact while the speed keeps its sign, from the arc length to it."""
+    arc_length = duration * (state[SPEED] + duration * control[0] / 2.0)
+    heading = state[HEADING] if arc_length >= 0.0 else state[HEADING] + math.pi
+    curvature = math.copysign(control[1], control[1] * arc_length)
+    left = first_exit_on_curve(space, Arc(state[:HEADING], heading, curvature), abs(arc_length))
+    if left > abs(arc_length):
         return math.inf
-    speed, acceleration = abs(state[SPEED]), math.copysign(control[0], control[0] * way)
+    speed, acceleration = abs(state[SPEED]), math.copysign(control[0], control[0] * arc_length)
     if left == 0.0:
         return 0.0
     squared = max(speed * speed + 2.0 * acceleration * left, 0.0)

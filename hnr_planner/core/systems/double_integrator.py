@@ -23,7 +23,7 @@ from hnr_planner.core.systems.system import (
 )
 import numpy as np
 
-#: A component across is told from rounding when it is longer than this fraction of the vector.
+#: Fraction of a vector below which a component across it counts as rounding.
 ACROSS = 1e-6
 #: Nodes and weights on [-1, 1] of the quadrature for the length of a piece of a parabola.
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(16)
@@ -93,7 +93,7 @@ class DoubleIntegrator(System):
         return math.hypot(*self.velocity(state))
 
     def lengths(self, states: Floats, controls: Floats, durations: Floats) -> Floats:
-        """Return how far states (k, 2 dim) go: (k,) [m], by Gauss-Legendre quadrature."""
+        """Return (k,) lengths [m] of motions of states (k, 2 dim), by Gauss quadrature."""
         lengths: Floats = _lengths(states, controls, durations)
         return lengths
 
@@ -125,7 +125,7 @@ class DoubleIntegrator(System):
 
 @kernel
 def _lengths(states, controls, durations):
-    """Integrate the speed over the durations (k,) of steps: (k,)."""
+    """Return the integrals (k,) of the speed over the durations (k,) [s] of steps."""
     dim, lengths = controls.shape[1], np.empty(len(durations))
     for k in range(len(durations)):
         total = 0.0
@@ -152,7 +152,7 @@ def _move(system, state, control, duration, end):
 @contact.register(DoubleIntegratorData)
 @kernel
 def _contact(system, space, state, control, duration):
-    """Find where the parabola leaves the space."""
+    """Return the time at which the parabola leaves the space; inf for none."""
     dim = len(control)
     return first_exit_on_curve(space, Parabola(state[:dim], state[dim:], control), duration)
 
@@ -178,7 +178,7 @@ def _steer(system, state, position, velocity, weight, duration, control):
 
 @kernel
 def limit_acceleration(system, velocity, duration, control):
-    """Project an acceleration (dim,) to those within both limits, of speed after a duration."""
+    """Project an acceleration (dim,) onto those that keep both limits for a duration."""
     dim, radius = len(control), system.max_speed / duration
     if norm(control) <= system.max_acceleration:
         within, beyond = True, _speed_after(velocity, duration, control) > system.max_speed
@@ -212,7 +212,7 @@ def _nearest_on_both_spheres(limit, radius, offset, wanted, control):
         dot += wanted[i] * offset[i]
     across = wanted - (dot / (gap * gap)) * offset
     length = norm(across)
-    # A component that is mere rounding gives no direction: the middle is as near as any point.
+    # A component of rounding errors has no direction: the centre of the circle is as near as any.
     is_known = length > ACROSS * norm(wanted)
     for i in range(len(wanted)):
         sideways = across[i] / length * height if is_known else 0.0

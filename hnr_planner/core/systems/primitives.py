@@ -46,7 +46,7 @@ def steer(
 @dispatched
 @kernel
 def brake(system: Any, state: Any, control: Any) -> float:
-    """Write the control that brakes straight to rest, and return how long that takes."""
+    """Write the control that brakes along the heading to rest; return the time to rest [s]."""
     raise NotImplementedError
 
 
@@ -66,7 +66,7 @@ def velocity(system: Any, state: Any, out: Any) -> None:
 
 @kernel
 def propagated(system, states, controls, durations):
-    """Return where states (k, state_dim) get to under controls (k, ...) in durations (k,)."""
+    """Return the states (k, state_dim) after durations (k,) under controls (k, control_dim)."""
     ends = np.empty_like(states)
     for k in range(len(durations)):
         move(system, states[k], controls[k], durations[k], ends[k])

@@ -1,4 +1,4 @@
-"""What a system is: its states and controls, and the motion under a constant control."""
+"""The protocol of systems: their states and controls, and motion under a constant control."""
 
 import math
 from typing import Any, Protocol
@@ -10,7 +10,7 @@ from hnr_planner.core.systems.primitives import propagated
 import numpy as np
 from numpy.typing import ArrayLike
 
-#: A limit may be exceeded by this fraction of it, which is rounding.
+#: Fraction of a limit by which rounding may exceed it.
 ROUNDING = 1e-11
 
 
@@ -19,7 +19,7 @@ class System(Protocol):
     A robot with inertia, in the caller's units: metres, radians, seconds.
 
     A state is an array whose first ``dim`` numbers are the position. A control is constant for
-    some duration, in which the motion is closed form. Classes that inherit from this one get
+    some duration, for which the motion has a closed form. Classes that inherit from this one get
     ``check_state`` and ``propagate`` from the rest.
     """
 
@@ -74,7 +74,7 @@ class System(Protocol):
         """Return the speed [m/s] of a state (state_dim,)."""
 
     def lengths(self, states: Floats, controls: Floats, durations: Floats) -> Floats:
-        """Return how far states (k, state_dim) go in durations (k,) under controls: (k,) [m]."""
+        """Return (k,) lengths [m] of motions of states (k, state_dim) in durations (k,) [s]."""
 
     def compiled(self, space: Space) -> Any:
         """Return the compiled system in the kernel frame of a space."""
@@ -111,5 +111,5 @@ def vectors_from_kernel(space: Space, vectors: Floats) -> Floats:
 
 
 def _axes(space: Space) -> Floats:
-    """Axes (dim, dim) of the caller's frame, one in each row, in the kernel frame."""
+    """Return the axes (dim, dim) of the caller's frame, one in each row, in the kernel frame."""
     return space.turn_to_kernel(np.eye(space.dim))

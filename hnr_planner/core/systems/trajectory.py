@@ -1,4 +1,4 @@
-"""A trajectory: the states of a system over time, and the controls that lead through them."""
+"""A trajectory: the states of a system over time, and the controls between them."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -59,7 +59,7 @@ class Trajectory:
         return float(self.system.lengths(*steps).sum())
 
     def at(self, times: ArrayLike) -> Floats:
-        """Return the states (k, state_dim) at times (k,) [s], those outside taken at the ends."""
+        """Return the states (k, state_dim) at times (k,) [s], clamped to [0, duration]."""
         wanted = np.clip(np.atleast_1d(np.asarray(times, dtype=np.float64)), 0.0, self.duration)
         steps = np.searchsorted(self.times, wanted, side='right') - 1
         states = self.states[steps]
@@ -74,7 +74,7 @@ class Trajectory:
 
 def join_trajectories(trajectories: Sequence[Trajectory]) -> Trajectory:
     """
-    Return trajectories of one system, one after the other, as one.
+    Join trajectories of one system, in order, to one.
 
     Parameters
     ----------

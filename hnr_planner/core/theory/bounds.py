@@ -5,9 +5,9 @@ Lemma 13 bounds the conductance Phi of Hit-and-Run on Sigma = g(Omega) from belo
 ball and g preserves volume (Assumption 2). As printed, the formula has three errors and its proof
 has gaps, which ``docs/theory.md`` lists. So there are three versions of it:
 
-- ``printed``: the formula as it stands;
+- ``printed``: the formula as printed;
 - ``corrected``: with correct units, and with two factors that the proof loses;
-- ``mended``: also with what the proof needs where one of its steps fails.
+- ``repaired``: also with the changes that the proof needs where one of its steps fails.
 
 Lemma 6 turns a bound on Phi into a number of steps: ``mixing_bound``.
 """
@@ -86,7 +86,7 @@ def view_bound(kappa: float, distance: float, epsilon: float) -> float:
     return max(4.0 / math.pi, kappa / SIN_8) * distance / epsilon
 
 
-def mended_view_bound(dim: int, kappa: float, distance: float, epsilon: float) -> float:
+def repaired_view_bound(dim: int, kappa: float, distance: float, epsilon: float) -> float:
     """
     Return the bound of Lemma 11 with two steps of its proof corrected.
 
@@ -131,17 +131,17 @@ def corrected_conductance(image: BallImage) -> float:
     return delta / 24.0 * min(first, scale * min(1.0 / (24.0 * image.diameter), near))
 
 
-def mended_conductance(image: BallImage) -> float:
+def repaired_conductance(image: BallImage) -> float:
     """
-    Return the bound of Lemma 13 on Phi, with its proof mended but for one gap.
+    Return the bound of Lemma 13 on Phi, with its proof repaired but for one gap.
 
     Besides the corrections of ``corrected_conductance``: e^6 replaces e^4, since the cap of
-    Lemma 12 has to be cut at 2/sqrt n; Lemma 11 is that of ``mended_view_bound``; and, since
+    Lemma 12 has to be cut at 2/sqrt n; Lemma 11 is that of ``repaired_view_bound``; and, since
     d-tilde <= d_Sigma, the second branch uses the distance: d_Sigma >= e/(24 D) at depth e makes
     |u - v| >= e^2/(72 D), and so d-tilde >= e^2/(18 D^2).
     """
     n = image.dim
-    closeness = 1.0 / (6.0 * mended_view_bound(n, image.kappa, 1.0, 1.0))
+    closeness = 1.0 / (6.0 * repaired_view_bound(n, image.kappa, 1.0, 1.0))
     delta = image.depth / (16.0 * math.exp(6.0) * image.diameter)
     scale = image.depth / image.ratio_bound
     near = 4.0 / image.diameter * min(1.0 / (8.0 * math.sqrt(n)), closeness)

@@ -105,7 +105,7 @@ def chain_cost(space: Space, chain: Floats, n_links: float) -> float:
 
 
 def hull_of(space: Space) -> Space:
-    """Return the convex hull of a set in the plane, or its bounds where no corners are known."""
+    """Return the convex hull of a set in the plane, or its bounds where corners are unknown."""
     if isinstance(space, BallSpace | BoxSpace | PolytopeSpace):
         return space
     points = corners(space).points
@@ -144,7 +144,7 @@ def _pairwise(space: Space, nodes: Floats) -> Floats:
 
 
 def _shortest_length(nodes: Floats, ratios: Floats) -> float:
-    """Return the length of the shortest path from the first node to the second [m]."""
+    """Return the length [m] of the shortest path from node 0 to 1 of (k, 2), by visible pairs."""
     straight = float(np.linalg.norm(nodes[1] - nodes[0]))
     if len(nodes) == 2:
         return straight
@@ -178,7 +178,7 @@ def _best_chain(nodes: Floats, ratios: Floats, n_links: float) -> Floats | None:
 
 
 def _improved(space: Space, chain: Floats, n_links: float) -> float:
-    """Return the cost of a chain after its inner points have been optimized."""
+    """Return the cost of a chain (m, 2) after its inner points have been optimized."""
     cost = chain_cost(space, chain, n_links)
     if len(chain) == 2:
         return cost

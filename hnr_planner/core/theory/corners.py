@@ -52,7 +52,7 @@ def corners(space: Space) -> Corners:
 
 
 def _grid_corners(space: GridSpace) -> Corners:
-    """Return the lattice points around which blocked cells are not none, one side or all."""
+    """Return the lattice points at which the boundary of the blocked cells turns."""
     blocked = np.pad(space.blocked, 1, constant_values=True)
     around = np.stack([blocked[:-1, :-1], blocked[:-1, 1:], blocked[1:, :-1], blocked[1:, 1:]])
     count = around.sum(axis=0)

@@ -42,7 +42,7 @@ def expected_transitions(flow: CellFlow, goal: NDArray[np.bool_]) -> Floats:
 
 
 def mixing_estimate(mixing: float, goal_fraction: float) -> float:
-    """Return the estimate t_mix / sigma(G): an independent trial after every mixing time."""
+    """Return the estimate t_mix / sigma(G) [steps]: one independent trial per mixing time."""
     return mixing / goal_fraction
 
 

@@ -1,8 +1,8 @@
 """
-One search for a trajectory, and what becomes of the motion that it finds.
+One search for a trajectory: the motion found is converted, checked and shortened.
 
-A search ends with a motion in the kernel frame. It is made a trajectory in the caller's frame,
-checked there step by step, and shortened. All of that looks at the budget, like the search itself:
+A search ends with a motion in the kernel frame. It is converted to a trajectory in the caller's
+frame, checked there step by step, and shortened. All of that observes the budget, like the search:
 a chain of Hit-and-Run may have hundreds of thousands of steps.
 """
 
@@ -25,12 +25,12 @@ from hnr_planner.core.trajectories.request import KinodynamicRequest
 from hnr_planner.core.trajectories.shorten import shorten
 import numpy as np
 
-#: Purpose of a random stream, beside those of all attempts: to reduce a long motion.
+#: Purpose of the random stream that reduces a long motion, beside those of all attempts.
 REDUCE = 2
 #: Proposals for a shorter motion: for every request, for each of ``optimize_iterations``, and
-#: between two looks at the budget.
+#: between two checks of the budget.
 PROPOSALS, PROPOSALS_AGAIN, PROPOSALS_IN_A_BATCH = 2000, 10000, 200
-#: States handled between two looks at the budget: all of a trajectory that a robot would drive.
+#: States handled between two checks of the budget: all those of a trajectory of normal length.
 CHUNK = STEPS_MAX + 1
 
 
@@ -72,7 +72,7 @@ def evaluate(
     request: KinodynamicRequest, search: KinodynamicSearch, budget: Budget, began: float
 ) -> Found | None:
     """
-    Return what a solved search found, checked and if need be reduced; None when it is not free.
+    Return the trajectory of a solved search, reduced if it is too long; None if it is not free.
 
     Raises
     ------
@@ -102,7 +102,7 @@ def shortened(
     budget: Budget,
     began: float,
 ) -> Trajectory:
-    """Return the trajectory of a motion made shorter, as far as limits allow and if it is free."""
+    """Return a shorter trajectory, as far as the limits allow, or the same if that is not free."""
     rng = request.geometric.stream(0, SHORTEN)
     motion = _shorten_within(request, motion, rng, PROPOSALS, budget)
     if effort.optimizes:
@@ -118,7 +118,7 @@ def shortened(
 def _shorten_within(
     request: KinodynamicRequest, motion: Motion, rng: Stream, proposals: float, budget: Budget
 ) -> Motion:
-    """Return a motion after so many proposals for a shorter one, fewer where the budget ends."""
+    """Return a motion after ``proposals`` shortening proposals, fewer where the budget ends."""
     brakes = request.planner.boundary == 'forbidden'
     while proposals > 0 and budget.stop() is None:
         batch = int(min(proposals, PROPOSALS_IN_A_BATCH))
@@ -132,7 +132,7 @@ def to_trajectory(request: KinodynamicRequest, motion: Motion, budget: Budget) -
     """
     Return the trajectory of a motion found in the kernel frame.
 
-    Its start, and a goal that it meets exactly, are the caller's own numbers.
+    Its start, and a goal that it meets exactly, have exactly the caller's coordinates.
     """
     system, space = request.system, request.geometric.space
     states, controls = np.empty_like(motion.states), np.empty_like(motion.controls)

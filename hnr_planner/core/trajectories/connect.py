@@ -1,9 +1,9 @@
 """
-The hybrid: come to rest, find a path from there, drive it from stop to stop.
+Planner for the double integrator: come to rest, find a path, drive it from stop to stop.
 
-A double integrator at rest can follow every free polyline, stopping at its vertices. So, beyond
-coming to rest, finding a motion is no harder than finding a path, and trees of Hit-and-Run steps
-from both ends (``hit_and_run_connect``) soon find one. ``shorten`` then makes the motion fast.
+A double integrator at rest can follow every free polyline, stopping at its vertices. So, once it
+is at rest, a motion is found as a path is, by trees of Hit-and-Run steps from both ends
+(``hit_and_run_connect``). ``shorten`` then makes the motion fast.
 """
 
 from dataclasses import dataclass, field
@@ -17,7 +17,7 @@ from hnr_planner.core.planning.planner import (
     Problem,
     reaches_goal,
     to_goal,
-    with_room,
+    with_capacity,
 )
 from hnr_planner.core.planning.planners.hit_and_run_connect import HitAndRunConnect
 from hnr_planner.core.trajectories.problem import (
@@ -49,14 +49,14 @@ class KinodynamicConnect:
 
 @dataclass
 class KinodynamicConnectSearch:
-    """A search under way: first for a state at rest, then for a path from there."""
+    """A running search: first for a state at rest, then for a path from there."""
 
     problem: KinodynamicProblem
     rng: Stream
     _n_rows: int = field(init=False, default=1)
     _steps: Steps = field(init=False)
     _n_braking: int = field(init=False, default=0)
-    #: Row of the table that is at rest, the problem of going on from there, and its search.
+    #: Row of the table that is at rest, the problem from there to the goal, and its search.
     _rest_row: int = field(init=False, default=NONE)
     _from_rest: Problem = field(init=False)
     _path_search: PathSearch | None = field(init=False, default=None)
@@ -95,16 +95,16 @@ class KinodynamicConnectSearch:
 
     @property
     def counts(self) -> dict[str, int]:
-        """Number of steps that it took to come to rest."""
+        """Number of steps of the tree that comes to rest."""
         return {'braking_steps': self._n_braking}
 
     @property
     def motion(self) -> Motion:
-        """To rest, and on from vertex to vertex of the path that was found."""
+        """The motion to rest, then from vertex to vertex of the path found."""
         return self._driven(self._stops)
 
     def draft(self, motion: Motion) -> Motion:
-        """Return the motion to rest, and on along the path shortened by visibility."""
+        """Return the motion to rest, then along the path shortened by visibility."""
         return self._driven(shorten_stops(self._from_rest, self._stops))
 
     @property
@@ -117,7 +117,7 @@ class KinodynamicConnectSearch:
         durations, states, controls = motion_to(self._steps, self._rest_row)
         more = drive_stops(self.problem.system, stops)
         if len(durations) + len(more[0]) == 0:
-            # At rest, and next to the goal: the shortest step there is.
+            # At rest next to the goal: one step of the shortest duration.
             ends = np.stack([states[0], states[0]])
             ends[-1, : stops.shape[1]] = stops[-1]
             return Motion(np.array([SHORTEST_STEP]), ends, np.zeros((1, stops.shape[1])))
@@ -137,7 +137,8 @@ class KinodynamicConnectSearch:
             self._path_search.advance(n_iterations)
 
     def _come_to_rest(self, n_iterations: int) -> None:
-        self._steps = Steps(*(with_room(c, self._n_rows + n_iterations + 2) for c in self._steps))
+        rows = self._n_rows + n_iterations + 2
+        self._steps = Steps(*(with_capacity(column, rows) for column in self._steps))
         self._n_rows, taken, self._rest_row = come_to_rest(
             self.problem, self.rng, self._steps, self._n_rows, n_iterations
         )
@@ -153,5 +154,5 @@ class KinodynamicConnectSearch:
 
 @kernel
 def is_direct(geometric):
-    """Return whether the start reaches the goal as it is."""
+    """Return whether the start reaches the goal directly."""
     return reaches_goal(geometric, geometric.start)

@@ -1,5 +1,5 @@
 """
-The controller of the paper's kinodynamic planners, and what these two share.
+The controller of the paper's two kinodynamic planners, with their settings and searches.
 
 A transition drives towards a desired position and velocity (paper, Section 5): the controller
 takes one step of constant control after another, each as near to the target as the limits allow.
@@ -12,7 +12,7 @@ from hnr_planner.core.checks import check_choice, check_number, Floats
 from hnr_planner.core.errors import RequestError
 from hnr_planner.core.kernels.kernel import kernel
 from hnr_planner.core.kernels.streams import Stream
-from hnr_planner.core.planning.planner import with_room
+from hnr_planner.core.planning.planner import with_capacity
 from hnr_planner.core.systems.primitives import steer, velocity
 from hnr_planner.core.systems.system import check_limit
 from hnr_planner.core.trajectories.problem import (
@@ -27,21 +27,21 @@ from hnr_planner.core.trajectories.steps import first_step, motion_to, Steps, ta
 import numpy as np
 from numpy.typing import NDArray
 
-#: How a transition ends: when the target is no longer getting nearer, or after one step.
+#: End of a transition: when the target comes no nearer, or after one step.
 Transition: TypeAlias = Literal['arrival', 'step']
 TRANSITIONS: tuple[Transition, ...] = ('arrival', 'step')
-#: Steps in one transition at most.
+#: Largest number of steps in one transition.
 STEPS_MAX = 256
 
 
 class Driving(NamedTuple):
     """
-    Settings of a driven planner; kernels take them as they are.
+    Settings of a driven planner, as they are passed to kernels.
 
     Attributes
     ----------
     inelastic : bool
-        Whether the boundary stops the robot rather than forbid the step.
+        Whether the boundary stops the robot; otherwise a step that meets it is not taken.
     one_step : bool
         Whether a transition is one step.
     time_step : float
@@ -65,10 +65,10 @@ class DrivenPlanner:
     Attributes
     ----------
     boundary : 'forbidden' or 'inelastic'
-        What the boundary does: it must not be met, or it stops the robot there (the paper's).
+        Effect of the boundary: it must not be met, or it stops the robot there (the paper's).
     transition : 'arrival' or 'step'
-        What the paper's count of transitions counts, which it leaves open: driving until the
-        target is no longer getting nearer or the boundary is met, or one step.
+        Unit of the count of transitions, which the paper leaves open: driving until the target
+        comes no nearer or the boundary is met, or one step.
     time_step : float
         Duration of an integration step [s], at least 2e-9.
     velocity_weight : float
@@ -109,7 +109,7 @@ class DrivenPlanner:
 
 @dataclass
 class DrivenSearch:
-    """A table of steps under way."""
+    """A running search with a table of steps."""
 
     problem: KinodynamicProblem
     driving: Driving
@@ -136,21 +136,21 @@ class DrivenSearch:
 
     @property
     def counts(self) -> dict[str, int]:
-        """Integration steps, those included that were not taken."""
+        """Number of integration steps, including those that were not taken."""
         return {'integration_steps': self.n_steps}
 
     @property
     def motion(self) -> Motion:
-        """The steps that lead to the newest state."""
+        """The motion from the start to the newest state."""
         return motion_to(self._steps, self._n_rows - 1)
 
     def draft(self, motion: Motion) -> Motion:
-        """Return ``motion``, which is the only one known."""
+        """Return ``motion``: there is no better one to shorten."""
         return motion
 
-    def _make_room(self, n_iterations: int) -> None:
+    def _grow_arrays(self, n_iterations: int) -> None:
         rows = self._n_rows + n_iterations * (1 if self.driving.one_step else STEPS_MAX)
-        self._steps = Steps(*(with_room(column, rows) for column in self._steps))
+        self._steps = Steps(*(with_capacity(column, rows) for column in self._steps))
 
 
 @kernel
@@ -158,7 +158,7 @@ def drive(problem, driving, steps, n_rows, parent, position, velocity_wanted):
     """
     Drive from row ``parent`` towards a target: (rows, steps tried, whether the goal is reached).
 
-    The first step is kept wherever it leads; a later one that comes no nearer is not.
+    The first step is always kept, a later one only if it comes nearer to the target.
     """
     row, tried, nearest = parent, 0, np.inf
     while tried < STEPS_MAX:
@@ -193,7 +193,7 @@ def drive(problem, driving, steps, n_rows, parent, position, velocity_wanted):
 
 @kernel
 def _squared_distance(system, driving, state, position, velocity_wanted):
-    """Squared distance of a state to a target: in position and in weighted velocity."""
+    """Return the squared distance of a state to a target, in position and weighted velocity."""
     dim = len(position)
     v, squared = np.empty(dim), 0.0
     velocity(system, state, v)

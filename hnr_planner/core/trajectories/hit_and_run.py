@@ -30,13 +30,13 @@ class KinodynamicHitAndRun(DrivenPlanner):
 
 @dataclass
 class KinodynamicHitAndRunSearch(DrivenSearch):
-    """A chain under way."""
+    """A running search by one chain."""
 
     def advance(self, n_iterations: int) -> None:
         """Handle at most ``n_iterations`` further proposals."""
         if self.solved:
             return
-        self._make_room(n_iterations)
+        self._grow_arrays(n_iterations)
         self._n_rows, taken, n_steps, self.solved = _walk(
             self.problem, self.driving, self.rng, self._steps, self._n_rows, n_iterations
         )

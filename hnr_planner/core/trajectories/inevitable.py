@@ -2,11 +2,11 @@
 Proof that a collision is inevitable, from the stopping distance.
 
 Whatever the control, the position at time ``t`` lies in the disc of radius ``a t^2 / 2`` around
-``x + v t``, where ``a`` is the largest acceleration. On a grid the free cells that the robot may
-be in are followed from one slice of time to the next: the cells that the disc of the slice
-touches, and that such cells connect to the ones before. Once none is left, a collision has
-happened. In every space the bounds are walls: no robot stops before a wall that is nearer than the
-stopping distance ``v^2 / (2 a)``.
+``x + v t``, where ``a`` is the largest acceleration. On a grid the set of free cells that the
+robot may be in is computed from one slice of time to the next: the cells that touch the disc of
+the slice and are connected, through such cells, to the set before. Once it is empty, a collision
+has happened. In every space the bounds are walls: no robot stops before a wall that is nearer than
+the stopping distance ``v^2 / (2 a)``.
 """
 
 import math
@@ -17,7 +17,7 @@ from hnr_planner.core.kernels.kernel import kernel
 from hnr_planner.core.spaces.grid.traversal import GridData
 import numpy as np
 
-#: Slices of the time after which the disc has grown over the position at the start.
+#: Number of slices of the time until the disc contains the position at the start.
 SLICES = 96
 
 
@@ -25,14 +25,14 @@ def is_collision_inevitable(
     space: Any, bounds: tuple[Floats, Floats], x: Floats, v: Floats, acceleration: float
 ) -> bool:
     """
-    Return whether a collision is proved to come; False proves nothing.
+    Return whether a collision is proved to be inevitable; False proves nothing.
 
     Parameters
     ----------
     space : NamedTuple
         The compiled space.
     bounds : (dim,), (dim,)
-        The box around it.
+        Corners of a box around it.
     x, v : (dim,)
         Position and velocity.
     acceleration : float
@@ -48,7 +48,7 @@ def is_collision_inevitable(
 
 @kernel
 def _is_trapped(free_distance, x, v, acceleration):
-    """Follow the cells that the robot may be in, slice by slice; return whether none is left."""
+    """Return whether the set of cells that the robot may be in becomes empty."""
     rows, columns = free_distance.shape
     speed = math.hypot(v[0], v[1])
     duration = 2.0 * speed / acceleration / SLICES
@@ -77,7 +77,7 @@ def _is_trapped(free_distance, x, v, acceleration):
 
 @kernel
 def _spread(free_distance, x, y, radius, cells, n, reached, stack):
-    """Spread over free cells that a disc touches, from those of the ``n`` cells before."""
+    """Write the free cells that touch a disc, connected to one of ``n`` cells; return how many."""
     waiting, found = 0, 0
     for k in range(n):
         if _touches(cells[k, 0], cells[k, 1], x, y, radius):

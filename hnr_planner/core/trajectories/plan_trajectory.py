@@ -72,7 +72,7 @@ def plan_trajectory(
     goal_speed : float
         Largest speed at the end [m/s]; 0, at rest, ``kinodynamic_connect`` alone can do.
     boundary : 'forbidden' or 'inelastic'
-        What the boundary of the space does. Forbidden: it is never met, and the end of the
+        Effect of the boundary of the space. Forbidden: it is never met, and the end of the
         trajectory can be braked straight to rest before it; a start whose collision can be proved
         is an INEVITABLE_COLLISION. Inelastic (the paper's): it stops the robot at once, which
         goes on from there, and trajectories may use that. A planner value brings its own.
@@ -87,11 +87,10 @@ def plan_trajectory(
         ``DoubleIntegrator``; and one of more than 10,000 steps that cannot be shortened is
         refused. False: the trajectory is returned as it was found, however long it is.
     optimize_for : float
-        For so many seconds of the call, within the time limit, the trajectory is shortened
-        further.
+        Seconds of the call, within the time limit, in which the trajectory is shortened further.
     optimize_iterations : int
-        How many more rounds of shortening to run; together with ``optimize_for`` whichever ends
-        first.
+        Number of further rounds of shortening; where ``optimize_for`` is given too, the first to
+        end counts.
     cancel : threading.Event, optional
         Ends the call once it is set.
     **settings
@@ -144,7 +143,7 @@ def plan_trajectory(
 
 
 def _stay(request: KinodynamicRequest, status: PlannerStatus) -> Trajectory | None:
-    """Return the trajectory that stays at the start where that is a solution: one step of 0 s."""
+    """Return the trajectory of one step of 0 s at the start where that is a solution."""
     if status is not PlannerStatus.SOLVED:
         return None
     control = np.zeros((1, request.system.control_dim))

@@ -16,7 +16,7 @@ from hnr_planner.core.planning.planner import Problem, Search
 from hnr_planner.core.systems.primitives import velocity
 import numpy as np
 
-#: What the boundary does: it must not be met, or it stops the robot, which goes on from there.
+#: Effect of the boundary: it must not be met, or it stops the robot, which continues from there.
 Boundary: TypeAlias = Literal['forbidden', 'inelastic']
 BOUNDARIES: tuple[Boundary, ...] = ('forbidden', 'inelastic')
 #: Shortest step of a motion [s]; twice the shortest of a trajectory, whose times are rounded sums.
@@ -25,7 +25,7 @@ SHORTEST_STEP = 2e-9
 
 class KinodynamicProblem(NamedTuple):
     """
-    A planning problem for a system; kernels take it as it is.
+    A planning problem for a system in the kernel frame of a space, as it is passed to kernels.
 
     Attributes
     ----------
@@ -47,7 +47,7 @@ class KinodynamicProblem(NamedTuple):
 
 
 class Motion(NamedTuple):
-    """Durations (m - 1,) and controls (m - 1, control_dim) of steps; states (m, state_dim)."""
+    """Durations (m - 1,) [s] and controls (m - 1, control_dim) of steps; states (m, state_dim)."""
 
     durations: Floats
     states: Floats
@@ -55,14 +55,14 @@ class Motion(NamedTuple):
 
 
 class KinodynamicSearch(Search, Protocol):
-    """A search for a motion."""
+    """A running search for a motion."""
 
     @property
     def motion(self) -> Motion:
         """Motion of a solved search, as it was found."""
 
     def draft(self, motion: Motion) -> Motion:
-        """Return the motion to begin shortening with: ``motion``, or a better one it knows."""
+        """Return the motion from which shortening starts: ``motion``, or a better one."""
 
 
 class KinodynamicPlanner(Protocol):
@@ -74,14 +74,14 @@ class KinodynamicPlanner(Protocol):
 
     @property
     def boundary(self) -> Boundary:
-        """What the boundary does."""
+        """Effect of the boundary on a step that meets it."""
 
     @property
     def samples_goal(self) -> bool:
-        """Whether a state lies in the goal region by chance only."""
+        """Whether states are sampled, so that only a goal region can be reached, not a point."""
 
     def start(self, problem: KinodynamicProblem, rng: Stream) -> KinodynamicSearch:
-        """Start a search."""
+        """Start a search for a motion that solves ``problem``, with a random stream."""
 
 
 @kernel

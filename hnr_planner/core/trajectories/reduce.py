@@ -1,9 +1,10 @@
 """
-Reducing a long motion of the double integrator: most of its steps are cut out, at little cost.
+Reduction of a long motion of the double integrator to fewer steps, at little cost.
 
-A chain of Hit-and-Run may wander for hours before it meets the goal, in hundreds of thousands of
-steps. Here two of its states, at random, are connected directly, and a connection that is free and
-faster replaces all steps between them. A proposal takes the same time however long the motion is.
+A chain of Hit-and-Run may drive for hours before it meets the goal, in hundreds of thousands of
+steps. Here two random states are connected directly, and a connection that is free and faster
+replaces all steps between them. The time of a proposal does not depend on the length of the
+motion.
 """
 
 import math
@@ -18,11 +19,11 @@ from hnr_planner.core.trajectories.problem import KinodynamicProblem, Motion
 from hnr_planner.core.trajectories.shorten import is_free
 from hnr_planner.core.trajectories.two_point import connect, empty_connection
 
-#: A motion of more steps is one that no robot would drive.
+#: Number of steps above which a motion is too long to be driven.
 STEPS_MAX = 10_000
-#: Steps at which a motion is short enough to be shortened in time as it is.
+#: Number of steps up to which a motion is shortened in time without a reduction.
 STEPS_ENOUGH = 1000
-#: Proposals at most, and between two looks at the budget.
+#: Largest number of proposals, and number between two checks of the budget.
 PROPOSALS, PROPOSALS_IN_A_BATCH = 20_000, 100
 
 
@@ -44,9 +45,9 @@ def _reduce(problem, durations, states, controls, n, rng, proposals, enough):
     """Apply proposals to the first ``n`` steps of a motion in place; return how many are left."""
     problem, rng = borrowed(problem), borrowed(rng)
     system, dim = problem.system, controls.shape[1]
-    room = empty_connection(dim)
+    work = empty_connection(dim)
     # A connection has fewer steps than every window.
-    shortest = len(room.durations) + 1
+    shortest = len(work.durations) + 1
     to_rest = system.max_speed / system.max_acceleration
     for _ in range(proposals):
         if n <= max(enough, shortest):
@@ -56,11 +57,11 @@ def _reduce(problem, durations, states, controls, n, rng, proposals, enough):
         j = i + window
         a, b = states[i], states[j]
         longest = 2.0 * distance(a[:dim], b[:dim]) / system.max_speed + 4.0 * to_rest
-        duration = connect(system, a, b, longest, room)
-        if duration == math.inf or not is_free(problem, a, room):
+        duration = connect(system, a, b, longest, work)
+        if duration == math.inf or not is_free(problem, a, work):
             continue
         if duration < durations[i:j].sum():
-            n = _replace(system, durations, states, controls, n, i, j, room)
+            n = _replace(system, durations, states, controls, n, i, j, work)
     return n
 
 

@@ -1,8 +1,7 @@
 """
 The planners of ``plan_trajectory``, each listed once.
 
-Names and descriptions are known without importing any planner: this module needs neither NumPy nor
-the compiler.
+Names and descriptions need no import of a planner: this module imports neither NumPy nor numba.
 """
 
 from __future__ import annotations
@@ -35,7 +34,7 @@ KINODYNAMIC_ENTRIES = (
         "the paper's RRT: a tree, driven from its nearest vertex to random states",
     ),
 )
-#: What 'auto' is, in one line.
+#: Description of 'auto', in one line.
 AUTO_SUMMARY = 'kinodynamic_connect for a double integrator, kinodynamic_rrt for other systems'
 
 #: Names that ``plan_trajectory`` takes.
@@ -43,7 +42,7 @@ KINODYNAMIC_ALGORITHMS = ('auto', *(entry.name for entry in KINODYNAMIC_ENTRIES)
 
 
 class _Classes(Mapping[str, type[Any]]):
-    """The classes of planners by name; each is imported when it is asked for."""
+    """The classes of planners by name; each is imported when it is first accessed."""
 
     def __init__(self, entries: tuple[PlannerEntry, ...]) -> None:
         self._entries = {entry.name: entry for entry in entries}

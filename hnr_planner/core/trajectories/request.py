@@ -13,7 +13,7 @@ from hnr_planner.core.planning.request import (
     Request,
 )
 from hnr_planner.core.planning.result import PlannerStatus
-from hnr_planner.core.spaces.curves.curve import knows_curves
+from hnr_planner.core.spaces.curves.curve import supports_curves
 from hnr_planner.core.spaces.space import Space
 from hnr_planner.core.systems.double_integrator import DoubleIntegrator
 from hnr_planner.core.systems.system import System, vectors_to_kernel
@@ -88,10 +88,10 @@ def check_kinodynamic_request(
         raise RequestError(
             f'system must be of the dimension of the space, {space.dim}, got {system.dim}'
         )
-    if not knows_curves(space.data):
+    if not supports_curves(space.data):
         raise RequestError(
-            f'no trajectory can be planned in a {type(space).__name__}, which does not know where '
-            f'curves leave it, got system {system!r}'
+            f'no trajectory can be planned in a {type(space).__name__}, which does not compute '
+            f'the first exit of curves, got system {system!r}'
         )
     state = system.check_state('start', start)
     planner = make_kinodynamic_planner(algorithm, settings, system, boundary)
@@ -126,7 +126,7 @@ def make_kinodynamic_planner(
     ------
     RequestError
         When name, setting or boundary are unknown or do not go together, settings come beside a
-        planner value, or the planner is none for this system.
+        planner value, or the planner does not support this system.
 
     """
     check_choice('boundary', boundary, BOUNDARIES)
@@ -171,7 +171,7 @@ def _check_simplify(simplify: bool | None, system: System) -> bool:
 
 
 def check_optimization(request: KinodynamicRequest, effort: Effort) -> None:
-    """Raise RequestError where a shorter trajectory is asked for and none can be looked for."""
+    """Raise RequestError where optimization is requested but the trajectory is not shortened."""
     if request.shortens or not effort.optimizes:
         return
     why = (
@@ -189,8 +189,8 @@ def outcome_before_search(request: KinodynamicRequest) -> tuple[PlannerStatus, s
     """
     Return the status of a request that needs no search, and the reason; None for one that does.
 
-    An end that is not free, no path between the two, a collision that cannot be avoided, or a
-    start in the goal region.
+    No search is needed when an end is not free, when no path joins the two components, when a
+    collision is proved inevitable, or when the start is in the goal region.
     """
     known = outcome_without_search(request.geometric)
     if known is not None and known[0] is not PlannerStatus.SOLVED:
@@ -207,7 +207,7 @@ def outcome_before_search(request: KinodynamicRequest) -> tuple[PlannerStatus, s
 
 
 def _is_doomed(request: KinodynamicRequest) -> bool:
-    """Return whether it is proved that the start runs into the boundary."""
+    """Return whether a collision with the boundary is proved inevitable from the start."""
     problem = request.problem
     if can_brake(problem, problem.start, request.system.control_dim):
         return False

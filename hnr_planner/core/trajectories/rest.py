@@ -1,9 +1,9 @@
 """
-How a start in motion comes to rest: braked straight, or by a tree of Hit-and-Run steps on curves.
+Motions from a moving start to rest: straight braking, or a tree of Hit-and-Run steps on curves.
 
-Where the boundary is in the way of braking straight, a tree grows from the start: a step has a
-uniform direction of full acceleration, and a uniform time until its curve meets the boundary or
-the limit on speed. It ends with the first state that can be braked straight.
+Where straight braking meets the boundary, a tree grows from the start: a step has a uniform
+direction of full acceleration, and a duration uniform up to the time at which its curve meets the
+boundary or the limit on speed. It ends with the first state from which straight braking is free.
 """
 
 import math
@@ -19,7 +19,7 @@ from hnr_planner.core.trees import NONE
 
 #: Longest step, in units of the time to brake from full speed.
 HORIZON = 2.0
-#: Fraction of the steps that begin at the start: most states that come of it cannot be braked.
+#: Fraction of steps that begin at the start: from most later states braking is not free either.
 FROM_START = 0.5
 
 
@@ -42,7 +42,7 @@ def come_to_rest(problem, rng, steps, n_rows, n_iterations):
 
 @kernel
 def _braked(system, steps, n_rows, row):
-    """Add the row that braking ``row`` leads to, unless it is at rest; return the rows."""
+    """Append the state at rest after braking from ``row``; return the number of rows."""
     state, control, end = steps.states[row], steps.controls[n_rows], steps.states[n_rows]
     duration = brake(system, state, control)
     if duration < SHORTEST_STEP:
@@ -56,7 +56,7 @@ def _braked(system, steps, n_rows, row):
 
 @kernel
 def _curve_step(problem, rng, steps, row, n_rows):
-    """Write a step of Hit-and-Run on curves from ``row``; return whether there is room for it."""
+    """Write a Hit-and-Run step on curves from ``row``; return whether it is long enough."""
     system = problem.system
     state, control, end = steps.states[row], steps.controls[n_rows], steps.states[n_rows]
     dim = len(control)

@@ -24,5 +24,5 @@ class TrajectoryResult(SearchResult):
     trajectory: Trajectory | None = None
 
     def __repr__(self) -> str:
-        """Return what results have in common, and the trajectory, without the arrays."""
+        """Name status and length, count vertices and samples, and name the trajectory."""
         return f'{super().__repr__()[:-1]}, trajectory={self.trajectory!r})'

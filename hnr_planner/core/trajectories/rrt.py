@@ -12,7 +12,7 @@ from hnr_planner.core.checks import Floats
 from hnr_planner.core.kernels.borrowed import borrowed
 from hnr_planner.core.kernels.kernel import kernel
 from hnr_planner.core.kernels.streams import Stream
-from hnr_planner.core.planning.planner import with_room
+from hnr_planner.core.planning.planner import with_capacity
 from hnr_planner.core.planning.planners.nearest import (
     BoxTree,
     empty_box_tree,
@@ -42,7 +42,7 @@ class KinodynamicRRT(DrivenPlanner):
 
 @dataclass
 class KinodynamicRRTSearch(DrivenSearch):
-    """A tree under way; its vertices are the states at which transitions ended."""
+    """A running search by one tree, whose vertices are the states at the ends of transitions."""
 
     rejected: int = field(init=False, default=0)
     #: Position and weighted velocity (rows, 2 dim) of each vertex.
@@ -60,15 +60,15 @@ class KinodynamicRRTSearch(DrivenSearch):
 
     @property
     def counts(self) -> dict[str, int]:
-        """Integration steps, and uniform proposals that fell outside the space."""
+        """Number of integration steps, and of uniform proposals outside the space."""
         return {**super().counts, 'rejected_proposals': self.rejected}
 
     def advance(self, n_iterations: int) -> None:
         """Handle at most ``n_iterations`` further proposals inside the space."""
         if self.solved:
             return
-        self._make_room(n_iterations)
-        self._points = with_room(self._points, len(self._steps.parents))
+        self._grow_arrays(n_iterations)
+        self._points = with_capacity(self._points, len(self._steps.parents))
         if len(self._tree.following) < len(self._steps.parents):
             self._tree = grown(self._tree, len(self._steps.parents))
         self._n_rows, taken, n_steps, rejected, self.solved = _grow(

@@ -1,5 +1,5 @@
 """
-Shortening a motion of the double integrator in time: it never becomes longer.
+Shortening of a motion of the double integrator in time; its duration never increases.
 
 Two states of the motion are connected directly, or through a state near one between them, and a
 connection that is free and faster replaces the motion between them (after Hauser and
@@ -23,12 +23,12 @@ from hnr_planner.core.trajectories.steps import can_brake
 from hnr_planner.core.trajectories.two_point import connect, empty_connection
 import numpy as np
 
-#: Fractions of the proposals that reach to the end, and that go through a state between.
+#: Fractions of the proposals that replace the end, and that pass through a random state.
 TO_END, THROUGH = 0.2, 0.6
-#: A state between is moved by at most what acceleration does in the time, at least by this
-#: fraction of it.
+#: Least shift of a random state, as a fraction of the largest that acceleration can cause in the
+#: time.
 LEAST_SHIFT = 1e-3
-#: Least gain, as a fraction of the duration: smaller ones would soon be rounding.
+#: Least gain as a fraction of the duration; smaller ones would soon be rounding errors.
 LEAST_GAIN = 1e-6
 
 
@@ -45,7 +45,7 @@ def shorten(
 
 @kernel
 def _shorten(problem, durations, states, controls, rng, proposals, brakes):
-    """Apply proposals to a motion; return the fields of the motion that it becomes."""
+    """Apply proposals to a motion; return the fields of the resulting motion."""
     problem, rng = borrowed(problem), borrowed(rng)
     system, dim = problem.system, controls.shape[1]
     first, second = empty_connection(dim), empty_connection(dim)
@@ -98,10 +98,9 @@ def _shorten(problem, durations, states, controls, rng, proposals, brakes):
 @kernel
 def _locate(durations, t):
     """
-    Return the step that is under way at time ``t``, and the time since it began.
+    Return the index of the step at time ``t`` [s], and the time since its begin.
 
-    A time so close to the begin or the end of the step that less than a step would be left is
-    taken there.
+    A time closer to the begin or the end of the step than the shortest step is moved there.
     """
     last = len(durations) - 1
     for k in range(last):
@@ -113,7 +112,7 @@ def _locate(durations, t):
 
 @kernel
 def _snapped(t, duration):
-    """Return 0 or ``duration`` in place of a time ``t`` closer to it than a step may be short."""
+    """Return 0 or ``duration`` for a time ``t`` closer to it than the shortest step."""
     if t < SHORTEST_STEP:
         return 0.0
     return t if t <= duration - SHORTEST_STEP else duration
@@ -121,7 +120,7 @@ def _snapped(t, duration):
 
 @kernel
 def _shift(system, rng, window, state):
-    """Move a state at random, at most as far as acceleration may have moved it in the time."""
+    """Move a state at random, at most as far as acceleration can in the window."""
     dim = len(state) // 2
     fraction = LEAST_SHIFT ** uniform(rng)
     change = fraction * system.max_acceleration * window
@@ -137,7 +136,7 @@ def _shift(system, rng, window, state):
 
 @kernel
 def _draw_end(problem, rng, last, end, brakes):
-    """Draw an end in the goal region, at a speed allowed there: near the last one or anywhere."""
+    """Draw an end in the goal region, at a speed allowed there: near the last one or uniform."""
     geometric, dim = problem.geometric, len(problem.geometric.goal)
     fraction = LEAST_SHIFT ** uniform(rng) if uniform(rng) < 0.5 else 1.0
     end[:] = last
@@ -170,7 +169,7 @@ def is_free(problem, state, connection):
 
 @kernel
 def _spliced(system, durations, states, controls, window, ends, connections):
-    """Return the motion with a window of it replaced by one connection or two."""
+    """Return the motion with a window of time replaced by one or two connections."""
     i, after_i, j, after_j = window
     a, between, b = ends
     rest = durations[j] - after_j

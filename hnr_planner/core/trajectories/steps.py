@@ -1,12 +1,12 @@
 """
-Steps of constant control: the table that a search keeps them in, and how the boundary ends them.
+Steps of constant control: the table of a search, and the effect of the boundary on a step.
 
 Every step is a row of the table, with the row that it began at. The effect of the boundary on a
 step that meets it is a setting:
 
 ``forbidden``
-    The step is not taken; nor is one whose end could not be braked straight to rest any more. So
-    no state in the table has a collision ahead of it that cannot be avoided.
+    The step is not taken; nor is one from whose end straight braking would meet the boundary. So
+    from every state in the table a collision can be avoided.
 ``inelastic``
     The step ends right before the boundary, and at rest (paper, Section 5).
 """
@@ -31,7 +31,7 @@ from numpy.typing import NDArray
 
 class Steps(NamedTuple):
     """
-    Steps in a table; row 0 is the start, which no step led to.
+    Steps in a table; row 0 is the start, which is the end of no step.
 
     Attributes
     ----------
@@ -40,9 +40,9 @@ class Steps(NamedTuple):
     parents : (rows,) int64
         The row that the step began at; NONE for the start.
     controls : (rows, control_dim)
-        Its control.
+        Control of each step.
     durations : (rows,)
-        Its duration.
+        Duration of each step [s].
 
     """
 
@@ -98,9 +98,9 @@ def _stop_before(problem, state, control, met, end):
     """
     Write the state at rest right before the boundary is met; return when, below 0 for never.
 
-    That is earlier by the time that the margin takes at full speed; where the boundary is met at a
-    grazing angle that is not enough, and it goes back further. A robot that moves and has no room
-    for that stops where it is.
+    It is earlier than contact by the time in which full speed covers the margin, and by more where
+    the boundary is met at a grazing angle. A moving robot that is nearer to the boundary stops at
+    once.
     """
     geometric, dim = problem.geometric, len(problem.geometric.goal)
     back = geometric.margin / problem.system.max_speed

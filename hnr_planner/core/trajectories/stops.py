@@ -12,12 +12,12 @@ from hnr_planner.core.systems.primitives import move
 from hnr_planner.core.trajectories.problem import SHORTEST_STEP
 import numpy as np
 
-#: Visibility tests that shorten the polyline by each of two methods before it is driven.
+#: Largest number of visibility tests of each of the two methods that shorten the polyline.
 TESTS = 2000
 
 
 def shorten_stops(geometric: Problem, stops: Floats) -> Floats:
-    """Return a free polyline (k, dim) without the stops (m, dim) not needed, and pulled taut."""
+    """Return a free polyline (k, dim) with the ends of ``stops`` (m, dim), shortened and taut."""
     kept = np.zeros(len(stops), dtype=np.int64)
     n_kept, _ = skip(geometric.space, NO_ISLANDS, stops, kept, 1, True, TESTS)
     beyond = kept[n_kept - 1] + 1
@@ -32,7 +32,7 @@ def drive_stops(system, stops):
     """
     Return the motion (durations, states, controls) that rests at each of ``stops`` (m, dim).
 
-    Each segment has a ramp up, a cruise at full speed where there is room for it, and a ramp down.
+    Each segment has a ramp up, a cruise at full speed where it is long enough, and a ramp down.
     """
     n, dim = len(stops) - 1, stops.shape[1]
     durations, controls = np.empty(3 * n), np.zeros((3 * n, dim))
@@ -48,7 +48,7 @@ def drive_stops(system, stops):
             continue
         cruise = length / speed - ramp
         if 1e-12 * ramp < cruise < SHORTEST_STEP:
-            # No cruise, but ramps that take as long at full speed.
+            # No cruise: ramps to the same speed at a lower acceleration, in the same time.
             ramp = length / speed
             strongest, cruise = speed / ramp, 0.0
         u = (stops[k + 1] - stops[k]) / length

@@ -44,9 +44,9 @@ class Connection(NamedTuple):
     mirror : (dim,)
         Normal of the reflection that lays the first axis along the displacement; 0 for none.
     cuts : (2 dim + 2,)
-        Times at which pieces end.
+        Ends of the pieces [s].
     durations, controls : (2 dim + 1,), (2 dim + 1, dim)
-        The pieces: how long each acceleration lasts.
+        Duration [s] and acceleration of each piece.
     n : (1,) int64
         Number of pieces.
 
@@ -74,33 +74,33 @@ def empty_connection(dim):
 
 
 @kernel
-def connect(system, a, b, longest, room):
+def connect(system, a, b, longest, work):
     """
-    Write a fast connection from state ``a`` to ``b`` to ``room``; return its duration.
+    Write a fast connection from state ``a`` to ``b`` in ``work``; return its duration [s].
 
-    It takes at most ``longest``; inf where there is none. A shorter one may exist beyond times
-    that are not feasible.
+    It takes at most ``longest`` [s]; inf where there is none. Feasible times need not be an
+    interval, so a shorter connection may exist.
     """
-    too_short, enough = _prepare(system, a, b, room), longest
-    if enough < SHORTEST_STEP or too_short > enough or not _fits(system, enough, room):
+    too_short, enough = _prepare(system, a, b, work), longest
+    if enough < SHORTEST_STEP or too_short > enough or not _fits(system, enough, work):
         return math.inf
     for _ in range(BISECTIONS):
         middle = (too_short + enough) / 2.0
-        if _fits(system, middle, room):
+        if _fits(system, middle, work):
             enough = middle
         else:
             too_short = middle
     enough = max(enough, SHORTEST_STEP)
-    if not _fits(system, enough, room):
+    if not _fits(system, enough, work):
         return math.inf
-    _write_pieces(enough, room)
+    _write_pieces(enough, work)
     return enough
 
 
 @kernel
-def _prepare(system, a, b, room):
-    """Lay the axes; return a time below which there is no connection."""
-    axes, mirror = room.axes, room.mirror
+def _prepare(system, a, b, work):
+    """Compute the axes; return a time [s] below which there is no connection."""
+    axes, mirror = work.axes, work.mirror
     dim = len(mirror)
     displacement, change = 0.0, 0.0
     for i in range(dim):
@@ -132,9 +132,9 @@ def _reflect(mirror, vector):
 
 
 @kernel
-def _fits(system, duration, room):
+def _fits(system, duration, work):
     """Solve every axis for a duration; return whether the limits are kept."""
-    axes = room.axes
+    axes = work.axes
     dim = axes.shape[1]
     most = system.max_acceleration * (1.0 - SPARE)
     fastest = system.max_speed
@@ -176,7 +176,7 @@ def _fit_axis(axis, duration):
 
 @kernel
 def _cut_off(axis, peak, fastest, duration):
-    """Let an axis cruise at ``fastest`` where it would be faster; inf acceleration for never."""
+    """Limit the speed of an axis to ``fastest`` by a cruise; inf acceleration if impossible."""
     before, after = axis[BEFORE], axis[AFTER]
     ends = max(abs(before), abs(after))
     if abs(peak) <= fastest or ends > fastest * (1.0 + EXCESS):
@@ -205,14 +205,14 @@ def _speed_at(axis, t, duration):
 
 
 @kernel
-def _write_pieces(duration, room):
+def _write_pieces(duration, work):
     """
-    Cut the time where an axis changes its acceleration, and write the pieces.
+    Divide the time where an axis changes its acceleration, and write the pieces.
 
-    What would be shorter than a step may be becomes part of the piece after it, the last of the
-    one before: that changes a velocity by rounding.
+    A piece below the shortest step is joined to the next, the last one to the one before: that
+    changes a velocity by rounding only.
     """
-    axes, cuts = room.axes, room.cuts
+    axes, cuts = work.axes, work.cuts
     dim, n = axes.shape[1], 0
     cuts[0], cuts[1] = 0.0, duration
     for i in range(dim):
@@ -226,12 +226,12 @@ def _write_pieces(duration, room):
         for i in range(dim):
             acceleration = axes[ACCELERATION, i]
             if middle > axes[LAST, i]:
-                room.controls[n, i] = -acceleration
+                work.controls[n, i] = -acceleration
             else:
-                room.controls[n, i] = acceleration if middle < axes[FIRST, i] else 0.0
-        _reflect(room.mirror, room.controls[n])
-        room.durations[n] = end - begin
+                work.controls[n, i] = acceleration if middle < axes[FIRST, i] else 0.0
+        _reflect(work.mirror, work.controls[n])
+        work.durations[n] = end - begin
         begin = end
         n += 1
-    room.durations[n - 1] += duration - begin
-    room.n[0] = n
+    work.durations[n - 1] += duration - begin
+    work.n[0] = n

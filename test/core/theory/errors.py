@@ -17,9 +17,9 @@ from hnr_planner.core.theory import (
     corrected_conductance,
     cross_ratio_distance,
     curve_curvature,
-    mended_conductance,
-    mended_view_bound,
     printed_conductance,
+    repaired_conductance,
+    repaired_view_bound,
     step_length,
     step_probability,
     view_bound,
@@ -85,7 +85,7 @@ def rate_on_the_ball():
     for name, bound in (
         ('printed', printed_conductance),
         ('corrected', corrected_conductance),
-        ('mended', mended_conductance),
+        ('repaired', repaired_conductance),
     ):
         for dim in DIMENSIONS:
             here, there = (bound(BallImage.unit_ball(n)) for n in (dim, 2 * dim))
@@ -274,6 +274,6 @@ def hits(dim, radius, small):
 def plane_angles():
     """Return the factor that Lemma 11 loses: sines for angles, uniform angles in a plane."""
     return {
-        f'loss, n = {dim}': mended_view_bound(dim, 10.0, 0.1, 1.0) / view_bound(10.0, 0.1, 1.0)
+        f'loss, n = {dim}': repaired_view_bound(dim, 10.0, 0.1, 1.0) / view_bound(10.0, 0.1, 1.0)
         for dim in DIMENSIONS
     }

@@ -14,11 +14,11 @@ from hnr_planner.core.theory import (
     cross_ratio_distance,
     image_boundary,
     lipschitz_factor,
-    mended_conductance,
-    mended_view_bound,
     mixing_bound,
     polygon_area,
     printed_conductance,
+    repaired_conductance,
+    repaired_view_bound,
     step_length,
     step_overlap,
     unseen_probability,
@@ -42,7 +42,7 @@ def test_the_unit_ball_has_volume_one(dim):
     assert image.diameter == 2 * image.radius
 
 
-@pytest.mark.parametrize('bound', [corrected_conductance, mended_conductance])
+@pytest.mark.parametrize('bound', [corrected_conductance, repaired_conductance])
 @pytest.mark.parametrize('dim', [2, 3, 50])
 def test_a_bound_without_unit_does_not_change_with_the_unit(bound, dim):
     metres = BallImage.unit_ball(dim)
@@ -54,9 +54,9 @@ def test_a_bound_without_unit_does_not_change_with_the_unit(bound, dim):
 @pytest.mark.parametrize('bend', [0.0, 1.0, 2.0])
 def test_mending_costs_and_bending_costs(bend):
     image = ball_image(ShearedSpace(BallSpace((0, 0), RADIUS), bend))
-    assert 0 < mended_conductance(image) < corrected_conductance(image)
+    assert 0 < repaired_conductance(image) < corrected_conductance(image)
     straight = BallImage.unit_ball(2)
-    assert mended_conductance(image) <= mended_conductance(straight) * (1 + 1e-6)
+    assert repaired_conductance(image) <= repaired_conductance(straight) * (1 + 1e-6)
 
 
 def test_a_sheared_disc_is_measured_as_it_is():
@@ -88,7 +88,7 @@ def test_the_bounds_hold_on_a_set_that_is_not_convex():
     cut = best_cut(cell_flow(BANANA, (12, 12), 1 << 16)).conductance
     assert cut > 0.1
     assert printed_conductance(image) < 1e-12
-    assert mended_conductance(image) < corrected_conductance(image) < 1e-13
+    assert repaired_conductance(image) < corrected_conductance(image) < 1e-13
 
 
 @pytest.mark.parametrize('apart', [0.02, 0.08])
@@ -123,10 +123,10 @@ def test_lemma_12_on_the_disc():
 
 def test_views_are_bounded():
     assert view_bound(2 * math.pi, 0.01, 0.5) == pytest.approx(16.4188 * 0.02, rel=1e-4)
-    assert mended_view_bound(2, 7.0, 0.01, 0.5) == pytest.approx(
+    assert repaired_view_bound(2, 7.0, 0.01, 0.5) == pytest.approx(
         math.pi / 2 * view_bound(7.0, 0.01, 0.5)
     )
-    assert mended_view_bound(3, 7.0, 0.01, 0.5) > mended_view_bound(2, 7.0, 0.01, 0.5)
+    assert repaired_view_bound(3, 7.0, 0.01, 0.5) > repaired_view_bound(2, 7.0, 0.01, 0.5)
 
 
 def test_mixing_follows_from_conductance():

@@ -25,10 +25,10 @@ from hnr_planner.core.theory import (
     corrected_conductance,
     cross_ratio_distance,
     link_diameter,
-    mended_conductance,
     mixing_bound,
     polygon_area,
     printed_conductance,
+    repaired_conductance,
     step_length,
     step_probability,
     transition_density,
@@ -83,7 +83,7 @@ def conductances():
 def bounds():
     for dim in errors.DIMENSIONS:
         found = errors.rate_on_the_ball()
-        versions = ('printed', 'corrected', 'mended')
+        versions = ('printed', 'corrected', 'repaired')
         yield (
             f'ball, n = {dim}',
             [f'{found[f"{name}, n = {dim}"]:.1e}' for name in versions]
@@ -91,7 +91,7 @@ def bounds():
         )
     image = ball_image(BANANA)
     conductance = [f(image) for f in (printed_conductance, corrected_conductance)]
-    conductance.append(mended_conductance(image))
+    conductance.append(repaired_conductance(image))
     yield 'banana, n = 2', [f'{value:.1e}' for value in conductance]
     yield 'banana, steps', [f'{mixing_bound(value, 2.0, 0.01):.1e}' for value in conductance]
 

@@ -45,7 +45,7 @@ def test_4_the_bound_falls_faster_than_the_cube_on_balls():
     for version in ('printed', 'corrected'):
         assert found[f'slope {version}, n = 10000'] == pytest.approx(-3.5, abs=2e-3)
     assert found['slope corrected, n = 10'] == pytest.approx(-3, abs=0.02)
-    assert found['slope mended, n = 10000'] == pytest.approx(-4, abs=2e-3)
+    assert found['slope repaired, n = 10000'] == pytest.approx(-4, abs=2e-3)
     ratio = ball_boundary_ratio(1, 9 / 20 / 100), ball_boundary_ratio(1, 9 / 20 / 400)
     assert ratio[1] / ratio[0] == pytest.approx(2, rel=0.01)  # R grows like sqrt n
 

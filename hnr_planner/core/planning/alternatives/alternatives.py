@@ -1,9 +1,10 @@
 """
-Find paths that are really different: none can be deformed into another past an obstacle.
+Find alternative paths, none of which can be deformed into another past an obstacle.
 
-Searches through uniform points of the space lead everywhere, through doors too. Their paths and
-further uniform points make a graph of points with free segments between them. In it the shortest
-paths of different homology classes are found, and each is shortened within its class.
+Searches from the start over uniform points to the goal explore the whole component, through narrow
+doors too. Their paths and further uniform points make a graph of points with free segments between
+them. In it the shortest paths of different homology classes are found, and each is shortened
+within its class.
 """
 
 from dataclasses import replace
@@ -36,28 +37,28 @@ from hnr_planner.core.spaces.primitives import component
 from hnr_planner.core.spaces.space import Space
 import numpy as np
 
-#: Number of uniform points in the graph, and of those searched for from start and goal; chosen
+#: Number of uniform points in the graph, and of those with a search from start and goal; chosen
 #: with the neighbours below for the shortest classes in little time on building maps.
 N_POINTS, N_VIAS = 200, 16
-#: Largest mean number of draws from the bounds for one point that lies in the space.
+#: Largest mean number of draws from the bounds for each point in the start's component.
 DRAWS_FOR_A_POINT = 200
 #: Nearest neighbours of each point of the graph to which segments are tested.
 N_NEIGHBOURS = 20
 #: Points whose neighbours are tested between two checks of the budget.
 ROWS = 100
-#: Classes sought in the graph for each path wanted: shortening may change their order.
+#: Classes searched for each path requested, since shortening may change their order.
 CLASSES_PER_PATH = 2
 #: Purpose of random streams, beside those of ``plan``.
 EXPLORE = 2
 
 
 def check_alternatives(space: Space, alternatives: int, simplify: bool) -> int:
-    """Return the number of paths wanted, or raise RequestError."""
+    """Return the number of paths requested, or raise RequestError."""
     n_paths = check_count('alternatives', alternatives, 1)
     if n_paths > 1 and space.island_points is None:
         raise RequestError(
-            f'alternatives must be 1 in a {type(space).__name__}, which does not know on which '
-            f'side of its obstacles a path passes, got {n_paths}'
+            f'alternatives must be 1 in a {type(space).__name__}, which does not compute '
+            f'on which side of obstacles a path passes, got {n_paths}'
         )
     if n_paths > 1 and not simplify:
         raise RequestError(f'alternatives must be 1 when simplify is false, got {n_paths}')
@@ -91,8 +92,8 @@ def _find(
     """
     Find the shortest paths of up to ``n_paths`` classes with the ends of ``path`` (m, dim).
 
-    It stands for its class until a shorter one is found there. A limit ends this early, with what
-    is known by then. Returns the paths, the shortest first, and the work of the searches.
+    ``path`` itself is one of them, unless a shorter one is found in its class. A limit ends the
+    search early, with the paths found so far. Returns the paths, the shortest first, and the work.
     """
     space = request.space
     if np.array_equal(path[0], path[-1]):
@@ -143,7 +144,7 @@ def _explore(request: Request, path: Floats, budget: Budget) -> tuple[ClassGraph
 
 
 def _linked(request: Request, paths: list[Floats], others: Floats, budget: Budget) -> ClassGraph:
-    """Return the graph of paths with the same ends and other points, with edges to near ones."""
+    """Return the graph of the vertices of paths and of other points, with edges to near points."""
     nodes, edges, n_nodes = [paths[0][[0, -1]]], [], 2
     for path in paths:
         inner = path[1:-1]
@@ -162,7 +163,7 @@ def _linked(request: Request, paths: list[Floats], others: Floats, budget: Budge
 
 @kernel
 def _draw_points(problem, rng, points):
-    """Fill ``points`` (k, dim) with uniform ones of the start's component; return their number."""
+    """Fill ``points`` (k, dim) with uniform points of the start's component; return how many."""
     component_of_start, n_points = component(problem.space, problem.start), 0
     for _ in range(DRAWS_FOR_A_POINT * len(points)):
         if n_points == len(points):

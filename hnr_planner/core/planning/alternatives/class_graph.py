@@ -1,11 +1,11 @@
 """
 Graph of points with free segments between them, and its shortest paths by homology class.
 
-Dijkstra's algorithm over pairs of a point and a signature, as in Bhattacharya, Likhachev and
-Kumar (2012), directed by the distance to the goal. A path of one of the k shortest classes has
-pieces that are among the k shortest to where they end, since the rest can follow on the others
-too: so each point keeps k signatures and the work has a bound. Paths that cross themselves are
-left out; they go round an island and return.
+Dijkstra's algorithm over pairs of a point and a signature, as in Bhattacharya, Likhachev and Kumar
+(2012), with the distance to the goal as the heuristic of A*. The beginning of a path of one of the
+k shortest classes is of one of the k shortest classes to its end, since the rest of the path could
+continue the others: so each point keeps k signatures, which bounds the work. Paths that cross
+themselves are left out; they go round an island and return.
 """
 
 from heapq import heappop, heappush
@@ -21,13 +21,13 @@ from hnr_planner.core.trees import branch, NONE
 import numpy as np
 from numpy.typing import NDArray
 
-#: Nodes of the ends of the request.
+#: Indices of the nodes at the ends of the request.
 START, GOAL = 0, 1
 
 
 class ClassGraph(NamedTuple):
     """
-    Points, and the pairs between which the segment is free.
+    Points, and the pairs of them with a free segment between.
 
     Attributes
     ----------
@@ -36,7 +36,7 @@ class ClassGraph(NamedTuple):
     first : (n + 1,) int64
         Index where each node's neighbours begin.
     neighbours : (edges,) int64
-        The neighbours of all nodes.
+        The neighbours of all nodes, node by node.
 
     """
 
@@ -62,7 +62,7 @@ def shortest_classes(graph: ClassGraph, islands: Islands, n_classes: int) -> lis
 
 @kernel
 def near_edges(space, points, rows, n_near):
-    """Return the edges (k, 2) from the points in ``rows`` to visible ones of their nearest."""
+    """Return the free edges (k, 2) from the points in ``rows`` to their nearest neighbours."""
     edges, n_edges = np.empty((len(rows) * n_near, 2), dtype=np.int64), 0
     nearest, squared = np.empty(n_near, dtype=np.int64), np.empty(n_near)
     for i in rows:
@@ -82,7 +82,7 @@ def near_edges(space, points, rows, n_near):
 
 @kernel
 def _insert(nearest, squared, j, distance_squared):
-    """Insert ``j`` into the nearest, which are in the order of their distance."""
+    """Insert ``j`` into the list of nearest points, which is ordered by distance."""
     k = len(nearest)
     while k > 0 and distance_squared < squared[k - 1]:
         k -= 1
@@ -94,7 +94,7 @@ def _insert(nearest, squared, j, distance_squared):
 
 @kernel
 def _search(graph, islands, n_classes):
-    """Search from start to goal; return labels at the goal, node and parent of every label."""
+    """Search from start to goal; return labels at the goal, node and parent of all labels."""
     points, rows = graph.points, 1 + n_classes * len(graph.neighbours)
     nodes, parents = np.empty(rows, dtype=np.int64), np.empty(rows, dtype=np.int64)
     lengths, signatures = np.empty(rows), np.empty(rows, dtype=np.int64)
@@ -128,7 +128,7 @@ def _search(graph, islands, n_classes):
 
 @kernel
 def _is_new(known, n_known, node, signature):
-    """Return whether a node has room for one more signature, and does not have this one."""
+    """Return whether a node lacks this signature, and has fewer than the largest number."""
     for k in range(n_known[node]):
         if known[node, k] == signature:
             return False

@@ -1,9 +1,9 @@
 """
-The planner for any request: Hit-and-Run from both ends, and a flood fill where that takes long.
+The default planner: Hit-and-Run from both ends, and a flood fill where that takes long.
 
-In long strips and one-cell mazes few steps get anywhere. A space that knows a path wherever there
-is one, as a grid does, gives it after a number of steps that nearly all searches stay below. The
-samples of the steps are kept.
+In long strips and one-cell mazes random steps make little progress. A grid finds a path wherever
+there is one by flood fill (``flood_path``), so that is used after more steps than nearly all
+searches take. The samples of these steps are kept.
 """
 
 from dataclasses import dataclass, field
@@ -19,8 +19,8 @@ from hnr_planner.core.planning.planners.hit_and_run_connect import (
 )
 from hnr_planner.core.spaces.primitives import flood_path
 
-#: Transitions after which the space is asked for a path: searches on building maps, spirals and
-#: mazes with corridors of several cells are solved after a tenth of them.
+#: Transitions before the flood fill: searches on building maps, spirals and mazes with corridors
+#: of several cells are solved after a tenth of them.
 FLOOD_AFTER = 20_000
 
 
@@ -43,7 +43,7 @@ class AutoSearch(HitAndRunConnectSearch):
 
     @property
     def made_by(self) -> str:
-        """Name of what made the path."""
+        """Name of the method that found the path."""
         return Auto.name if self._flooded is None else 'flood_fill'
 
     @property
@@ -57,7 +57,7 @@ class AutoSearch(HitAndRunConnectSearch):
         return super().path if self._flooded is None else self._flooded
 
     def advance(self, n_iterations: int) -> None:
-        """Take at most ``n_iterations`` further steps; fall back once there were enough."""
+        """Take at most ``n_iterations`` further steps; flood the space after ``FLOOD_AFTER``."""
         until_flood = FLOOD_AFTER - self.iterations
         if not 0 < until_flood <= n_iterations:
             super().advance(n_iterations)
@@ -71,7 +71,7 @@ class AutoSearch(HitAndRunConnectSearch):
 
 @kernel
 def flood(problem):
-    """Return the path (m, dim) that the space knows; (0, dim) for none."""
+    """Return the path (m, dim) of a flood fill; (0, dim) where the space has none."""
     return flood_path(
         problem.space, problem.start, problem.goal, problem.goal_radius, problem.margin
     )

@@ -2,9 +2,9 @@
 Frontier of a tree: the newest vertex in the bin that was chosen least often.
 
 The plane of the first two coordinates is divided into square bins. Each tree keeps lists of the
-bins that hold a vertex of it, one list for each number of times that they were chosen: the least
-used come first, and of these the newest. So a tree runs ahead where it has just arrived, and
-returns to what it left behind.
+bins that hold a vertex of it, one list for each number of times that they were chosen. The least
+used bins are chosen first, and of these the newest. So a tree first explores from its newest
+vertices, and returns later to the regions that it left.
 """
 
 import math
@@ -17,13 +17,13 @@ from hnr_planner.core.trees import NONE
 import numpy as np
 from numpy.typing import NDArray
 
-#: Largest number of bins along the longer side: a search on a large map has to start at once.
+#: Largest number of bins along the longer side, which limits the time to start a search.
 BINS_MAX = 128
 #: Side of a bin in units of the typical clearance; measured on building maps and spirals.
 SIDE = 1.75
-#: Largest number of choices that is counted: bins chosen more often share a list.
+#: Largest number of choices counted: bins that were chosen more often share one list.
 USES_MAX = 63
-#: Fraction of choices made among all bins, so that no bin is left for ever.
+#: Fraction of choices made uniformly among all bins, so that every bin is chosen again.
 ANY = 0.07
 
 
@@ -37,9 +37,9 @@ class Frontier(NamedTuple):
     newest : (2, bins) int32
         Newest vertex in a bin, NONE in an empty one.
     first : (2, USES_MAX + 1) int32
-        First of the bins used so many times.
+        Head of the list of bins that were chosen so many times; NONE for an empty list.
     following : (2, bins) int32
-        The next bin used as often.
+        Next bin of the same list.
     filled : (2, bins) int32
         Bins that are not empty, in the order in which they were filled.
     n_filled : (2,) int64
@@ -57,7 +57,7 @@ class Frontier(NamedTuple):
 
 @kernel
 def empty_frontier(lower, upper, clearance):
-    """Return the frontiers of two empty trees in a box, for a space of this typical clearance."""
+    """Return the frontiers of two empty trees in a box, with bins sized by a typical clearance."""
     width, height = upper[0] - lower[0], upper[1] - lower[1] if len(lower) > 1 else 0.0
     side = max(SIDE * clearance, max(width, height) / BINS_MAX)
     bins = make_bins(lower, upper, side)
@@ -101,6 +101,6 @@ def choose_vertex(frontier, tree, rng):
 
 @kernel
 def _put_first(frontier, tree, at, uses):
-    """Put a bin first in the list of those that were chosen ``uses`` times."""
+    """Insert a bin at the head of the list of those that were chosen ``uses`` times."""
     frontier.following[tree, at] = frontier.first[tree, uses]
     frontier.first[tree, uses] = at

@@ -2,8 +2,7 @@
 Hit-and-Run as a planner (paper, Section 1).
 
 From the start it takes one Hit-and-Run step after another, until a sample reaches the goal. Each
-step lies on a chord, so the chain itself is the path: no sampler of the space and no tree is
-needed.
+step lies on a chord and so is free of collision: the chain itself is the path, without a tree.
 """
 
 from dataclasses import dataclass, field
@@ -13,7 +12,7 @@ from hnr_planner.core.checks import Floats
 from hnr_planner.core.kernels.borrowed import borrowed
 from hnr_planner.core.kernels.kernel import kernel
 from hnr_planner.core.kernels.streams import Stream
-from hnr_planner.core.planning.planner import Problem, reaches_goal, to_goal, with_room
+from hnr_planner.core.planning.planner import Problem, reaches_goal, to_goal, with_capacity
 from hnr_planner.core.sampling.draws import hit_and_run_step
 import numpy as np
 from numpy.typing import NDArray
@@ -57,12 +56,12 @@ class HitAndRunSearch:
 
     @property
     def parents(self) -> NDArray[np.int64]:
-        """Each sample was reached from the one before."""
+        """Index (k,) of the sample before each; -1 for the start."""
         return np.arange(-1, self._length - 1)
 
     @property
     def path(self) -> Floats:
-        """The whole chain, and the goal."""
+        """Path (m, dim): the whole chain, and an exact goal."""
         return to_goal(self.problem, self.samples)
 
     @property
@@ -75,7 +74,7 @@ class HitAndRunSearch:
         if self.solved:
             return
         end = self._length + n_iterations
-        self._chain = with_room(self._chain, end)
+        self._chain = with_capacity(self._chain, end)
         self._length, self.solved, redraws = _walk(
             self.problem, self.rng, self._chain, self._length, end
         )

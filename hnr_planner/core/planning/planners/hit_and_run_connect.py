@@ -1,11 +1,12 @@
 """
 Trees of Hit-and-Run steps from start and goal, joined by the first free segment between them.
 
-The paper's chain explores fast but wanders, and its path is the whole walk; it leaves hybrids with
-short paths to the future. Here each end of the request grows a tree. A vertex at the frontier of
-its tree takes a step like Hit-and-Run's, but with foresight: of a few uniform directions the one
-with the longest free ray, and a uniform point on the outer part of that ray. For each new vertex
-segments to the other tree are tested: to the vertices around it, and to one anywhere.
+The paper's chain explores fast but wanders, and its path is the whole walk; the paper leaves
+planners with short paths to future work. Here a tree grows from each end of the request. From a
+vertex at the frontier of its tree a step is like Hit-and-Run's, but chooses among a few uniform
+directions the one with the longest free ray, and a uniform point on the outer section of that ray.
+For each new vertex segments to the other tree are tested: to the vertices nearby, and to one drawn
+uniformly.
 """
 
 from dataclasses import dataclass, field
@@ -15,7 +16,7 @@ from hnr_planner.core.checks import Floats
 from hnr_planner.core.kernels.borrowed import borrowed
 from hnr_planner.core.kernels.kernel import kernel
 from hnr_planner.core.kernels.streams import Stream, uniform
-from hnr_planner.core.planning.planner import Problem, reaches_goal, with_room
+from hnr_planner.core.planning.planner import Problem, reaches_goal, with_capacity
 from hnr_planner.core.planning.planners.frontier import (
     add_to_bin,
     choose_vertex,
@@ -36,15 +37,15 @@ from hnr_planner.core.trees import NONE
 import numpy as np
 from numpy.typing import NDArray
 
-#: Uniform directions that a step chooses from, and the fraction of the longest ray that it skips:
-#: the best of 1 to 6 and of 0 to .9 on building maps and spirals.
+#: Number of uniform directions that a step chooses from, and fraction of the longest ray that it
+#: skips: the best of 1 to 6 and of 0 to .9 on building maps and spirals.
 N_RAYS = 4
 INNER = 0.7
 
 
 class FrontierTrees(NamedTuple):
     """
-    Two trees, and what their steps need to know of them.
+    Two trees, with the index of their frontiers.
 
     Attributes
     ----------
@@ -53,9 +54,9 @@ class FrontierTrees(NamedTuple):
     members : (rows, 2) int64
         Rows of the vertices of each tree.
     frontier : Frontier
-        The vertices from which each tree should grow.
+        Bins from which the next vertex to grow each tree is chosen.
     directions : (2, dim)
-        Working memory of a step.
+        Work array of a step: the direction drawn, and the best one.
 
     """
 
@@ -78,10 +79,10 @@ class HitAndRunConnect:
 
 @dataclass
 class HitAndRunConnectSearch(TwoTreeSearch):
-    """Search with two trees; a transition is one step of one of them, in turn."""
+    """Search with two trees, which grow alternately; a transition is one step."""
 
     _redraws: int = field(init=False, default=0)
-    #: Planted with the first steps: one call of compiled code is worth two of Python's.
+    #: None until the first steps, whose kernel call also makes the trees: one call less.
     _trees: FrontierTrees | None = field(init=False, default=None)
 
     @property
@@ -109,21 +110,21 @@ class HitAndRunConnectSearch(TwoTreeSearch):
 
 
 def _with_rows(trees: FrontierTrees, rows: int) -> FrontierTrees:
-    """Return the trees with room for so many rows at least."""
+    """Return the trees with a capacity of ``rows`` at least."""
     table = with_rows(trees.table, rows)
-    return trees._replace(table=table, members=with_room(trees.members, len(table.parents)))
+    return trees._replace(table=table, members=with_capacity(trees.members, len(table.parents)))
 
 
 @kernel
 def _begin(problem, rng, n_iterations):
-    """Plant the trees and take their first steps; return the trees, and as ``_grow``."""
+    """Make the trees and take their first steps; return the trees, and the result of ``_grow``."""
     trees = _plant(problem, 2 + n_iterations)
     return trees, _grow(problem, trees, rng, 0, n_iterations)
 
 
 @kernel
 def _plant(problem, rows):
-    """Return trees with a root at the start, and one at the goal where a path leads there."""
+    """Return trees with roots at the start and, where it is in the same component, the goal."""
     trees = FrontierTrees(
         empty_trees(rows, len(problem.start)),
         np.empty((rows, 2), dtype=np.int64),
@@ -140,7 +141,7 @@ def _plant(problem, rows):
 
 @kernel
 def _grow(problem, trees, rng, turn, n_iterations):
-    """Grow the trees in turn; return the rows that connect them (NONE, NONE), steps, redraws."""
+    """Grow the trees alternately; return the rows that connect them or NONE, steps, redraws."""
     problem, trees, rng = borrowed(problem), borrowed(trees), borrowed(rng)
     vertices = trees.table.vertices
     n_trees = 2 if trees.table.sizes[1] > 0 else 1
@@ -175,7 +176,7 @@ def _step(space, x, rng, directions, y):
 
 @kernel
 def _add(trees, tree, parent):
-    """Make the vertex written in the first free row one of a tree; return its bin."""
+    """Add the vertex in the first free row to a tree; return its bin."""
     trees.members[trees.table.sizes[tree], tree] = first_free_row(trees.table)
     row = add_vertex(trees.table, tree, parent)
     return add_to_bin(trees.frontier, tree, trees.table.vertices[row], row)
@@ -183,7 +184,7 @@ def _add(trees, tree, parent):
 
 @kernel
 def _meet(space, trees, row, bin_number, other, rng):
-    """Return a visible vertex of the other tree: the newest in a bin around, or one anywhere."""
+    """Return a visible vertex of the other tree, nearby or drawn uniformly; NONE if hidden."""
     vertices, size = trees.table.vertices, trees.table.sizes[other]
     if size == 0:
         return NONE

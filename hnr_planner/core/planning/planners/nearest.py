@@ -1,11 +1,11 @@
 """
 Trees of boxes: exact nearest neighbours of growing sets of points.
 
-A tree of boxes: each node halves its box in the middle, along one axis after the other, and each
-leaf holds a short list of points. Boxes halve whatever the order in which points come, so that a
-corridor explored from one end to the other gives no deeper a tree than points at random; insertion
-and query cost like the logarithm of the number of points. Several sets may share the memory of one
-tree, each with a root of its own: compiled code pays for every array that it hands on.
+Each node halves its box in the middle, along one axis after the other, and each leaf holds a short
+list of points. The boxes do not depend on the order of the points, so that a corridor explored
+from one end to the other gives no deeper a tree than points at random; the cost of insertion and
+query is logarithmic in the number of points. Several sets may share the arrays of one tree, each
+with its own root: compiled code pays for every array that is an argument.
 """
 
 from typing import NamedTuple
@@ -18,20 +18,20 @@ from numpy.typing import NDArray
 
 #: Points in a leaf, above which it is halved.
 LEAF_SIZE = 8
-#: Depth of the deepest leaves: points nearer to each other than their size stay together.
+#: Depth of the deepest leaves, which are not halved however many points they hold.
 DEPTH_MAX = 100
 
 
 class BoxTree(NamedTuple):
     """
-    Sets of points in trees of boxes, one tree for each root.
+    Sets of points in trees of boxes, one tree for each root, in common arrays.
 
     Attributes
     ----------
     lower, upper : (dim,)
         The box of the roots, the first nodes.
     child : (nodes, 2) int32
-        Lower and upper half; NONE in a leaf.
+        Nodes of the lower and the upper half; NONE in a leaf.
     split : (nodes,)
         Coordinate at which the node is halved.
     first : (nodes,) int32
@@ -43,8 +43,8 @@ class BoxTree(NamedTuple):
     n_nodes : (1,) int64
         Nodes in use.
     waiting : (DEPTH_MAX + 2, 3)
-        Working memory of a query, its list of halves still to visit: node, depth, and squared
-        distance to the plane before it. A tree serves one query at a time.
+        Work array of a query, its stack of halves still to visit: node, depth, and squared
+        distance to the plane in front of it. So a tree can serve one query at a time only.
 
     """
 
@@ -60,7 +60,7 @@ class BoxTree(NamedTuple):
 
 
 def empty_box_tree(lower: Floats, upper: Floats, capacity: int, n_roots: int = 1) -> BoxTree:
-    """Return ``n_roots`` trees without points, with room for ``capacity`` of them in all."""
+    """Return ``n_roots`` trees without points, with a common capacity of ``capacity`` points."""
     nodes = 2 * capacity + n_roots
     return BoxTree(
         lower=lower,
@@ -76,7 +76,7 @@ def empty_box_tree(lower: Floats, upper: Floats, capacity: int, n_roots: int = 1
 
 
 def grown(tree: BoxTree, capacity: int) -> BoxTree:
-    """Return the same trees with room for ``capacity`` points."""
+    """Return the same trees with a common capacity of ``capacity`` points."""
     n_roots = len(tree.child) - 2 * len(tree.following)
     larger = empty_box_tree(tree.lower, tree.upper, capacity, n_roots)
     for name in ('child', 'split', 'first', 'following', 'size', 'n_nodes'):
@@ -87,7 +87,7 @@ def grown(tree: BoxTree, capacity: int) -> BoxTree:
 
 @kernel
 def insert(tree, points, k, root=0):
-    """Add point ``k`` of ``points`` (n, dim) to the tree of a root; each row to one tree."""
+    """Add point ``k`` of ``points`` (n, dim) to the tree of ``root``."""
     dim = points.shape[1]
     lower, upper = tree.lower.copy(), tree.upper.copy()
     node, depth = root, 0
@@ -108,7 +108,7 @@ def insert(tree, points, k, root=0):
 
 @kernel
 def _push(tree, leaf, k):
-    """Put point ``k`` first in the list of a leaf."""
+    """Insert point ``k`` at the head of a leaf's list."""
     tree.following[k] = tree.first[leaf]
     tree.first[leaf] = k
     tree.size[leaf] += 1
@@ -116,7 +116,7 @@ def _push(tree, leaf, k):
 
 @kernel
 def _halve(tree, points, leaf, axis, middle):
-    """Make ``leaf`` an inner node, and move its points to its two halves."""
+    """Turn ``leaf`` into an inner node, and move its points to its two halves."""
     new = tree.n_nodes[0]
     tree.n_nodes[0] += 2
     k = tree.first[leaf]
@@ -130,7 +130,7 @@ def _halve(tree, points, leaf, axis, middle):
 
 @kernel
 def nearest(tree, points, x, root=0):
-    """Return the lowest index of a root's points that are nearest to ``x`` (dim,)."""
+    """Return the index of a root's point nearest to ``x`` (dim,), the lowest if several."""
     dim = points.shape[1]
     waiting = tree.waiting
     waiting[0, 0], waiting[0, 1], waiting[0, 2] = root, 0.0, 0.0

@@ -1,9 +1,10 @@
 """
 Polyanya: the shortest path on a grid, exactly.
 
-Cones that start and corners see are expanded in the order of the shortest way through them that
-the straight line to the goal allows, as A* does, so the first way into the goal's slab that comes
-up is the shortest of all, and the least estimate of an open cone is a lower bound at any time.
+A search node is a cone of points visible from the start or from a corner. Cones are expanded as in
+A*, in the order of a lower bound on the length of paths through them, as if there were no further
+obstacles. So the first path to the goal that comes up is the shortest of all, and the least
+estimate of an open cone is a lower bound on its length at any time.
 Source: Cui, Harabor and Grastien, "Compromise-free pathfinding on a navigation mesh", IJCAI 2017,
 here on the slabs of a grid.
 
@@ -20,12 +21,13 @@ from hnr_planner.core.errors import RequestError
 from hnr_planner.core.kernels.kernel import kernel
 from hnr_planner.core.kernels.streams import Stream
 from hnr_planner.core.lengths import distance
-from hnr_planner.core.planning.planner import Problem, with_room
+from hnr_planner.core.planning.planner import Problem, with_capacity
+from hnr_planner.core.planning.planners.cone_expansion import expand
 from hnr_planner.core.planning.planners.cones import (
     CORNER,
     DISTANCE,
-    expand,
     FINAL,
+    first_capacity,
     Frontier,
     N_NODES,
     N_OPEN,
@@ -33,7 +35,6 @@ from hnr_planner.core.planning.planners.cones import (
     NONE,
     open_frontier,
     PARENT,
-    room_at,
 )
 from hnr_planner.core.spaces.grid.slabs import OFF_LINE, slab_at, Slabs
 from hnr_planner.core.spaces.primitives import first_exit
@@ -42,21 +43,21 @@ from hnr_planner.core.trees import rows_to
 import numpy as np
 from numpy.typing import NDArray
 
-#: Nodes that there is room for at first.
-ROOM = 4096
-#: Corners that the segments of a path may graze, for each vertex.
+#: Nodes that fit in the arrays at first.
+INITIAL_CAPACITY = 4096
+#: Largest number of corners that the segments of a path may graze, for each vertex.
 GRAZED_MAX = 64
 
 
 @dataclass(frozen=True)
 class Polyanya:
     """
-    The shortest path, exactly. It draws nothing, so its seed has no effect.
+    The exact shortest path on a grid. It is deterministic: the seed has no effect.
 
     Attributes
     ----------
     slabs : Slabs, optional
-        Free space of the grid; ``for_space`` puts in those of a space.
+        Free space of the grid; ``for_space`` sets it from a space.
 
     """
 
@@ -79,9 +80,9 @@ class Polyanya:
 @dataclass
 class PolyanyaSearch:
     """
-    A search under way; a transition is one expansion.
+    A running search; a transition is the expansion of one cone.
 
-    ``samples`` are the start and the corners at which shortest ways from it bend.
+    ``samples`` are the start and the corners at which shortest paths from it bend.
     """
 
     problem: Problem
@@ -94,8 +95,8 @@ class PolyanyaSearch:
 
     def __post_init__(self) -> None:
         self._start, self._goal = _off_lines(self.problem.start), _off_lines(self.problem.goal)
-        room = max(ROOM, room_at(self.slabs, self._start))
-        self._frontier = open_frontier(self.slabs, self._start, self._goal, room)
+        capacity = max(INITIAL_CAPACITY, first_capacity(self.slabs, self._start))
+        self._frontier = open_frontier(self.slabs, self._start, self._goal, capacity)
 
     @property
     def solved(self) -> bool:
@@ -104,7 +105,7 @@ class PolyanyaSearch:
 
     @property
     def lower_bound(self) -> float:
-        """Length that no path can fall below, kernel frame; that of the shortest when solved."""
+        """Lower bound on the length of paths, kernel frame; the least length when solved."""
         if self._frontier.sizes[N_OPEN] == 0:
             return math.inf
         return float(self._frontier.estimates[0])
@@ -116,13 +117,13 @@ class PolyanyaSearch:
 
     @property
     def parents(self) -> NDArray[np.int64]:
-        """Index (k,) of the corner before each on the shortest way known; -1 for the start."""
+        """Index (k,) of the corner before each on the shortest path found; -1 for the start."""
         rows = self._frontier.vertices[: self._frontier.sizes[N_VERTICES], PARENT]
         return rows.astype(np.int64)
 
     @property
     def counts(self) -> dict[str, int]:
-        """Cones opened."""
+        """Number of cones opened."""
         return {'cones': int(self._frontier.sizes[N_NODES])}
 
     @property
@@ -148,21 +149,21 @@ class PolyanyaSearch:
             exhausted = self._frontier.sizes[N_OPEN] == 0
             if self.solved or exhausted or self.iterations == end:
                 break
-            self._make_room()
+            self._grow()
 
-    def _make_room(self) -> None:
+    def _grow(self) -> None:
         frontier = self._frontier
         rows = len(frontier.nodes) + 1
         self._frontier = frontier._replace(
-            nodes=with_room(frontier.nodes, rows),
-            vertices=with_room(frontier.vertices, rows),
-            estimates=with_room(frontier.estimates, rows),
-            heap=with_room(frontier.heap, rows),
+            nodes=with_capacity(frontier.nodes, rows),
+            vertices=with_capacity(frontier.vertices, rows),
+            estimates=with_capacity(frontier.estimates, rows),
+            heap=with_capacity(frontier.heap, rows),
         )
 
 
 def _off_lines(point: Floats) -> Floats:
-    """Return a free point (2,), moved up by a hair where it lies on a line between two rows."""
+    """Return a free point (2,), moved up by ``OFF_LINE`` where it lies on a line between rows."""
     x, y = point.tolist()
     return np.array([x, y + OFF_LINE if y == math.floor(y) else y])
 
@@ -170,10 +171,10 @@ def _off_lines(point: Floats) -> Floats:
 @kernel
 def step_aside(space, points, margin):
     """
-    Return a path (m, 2) that passes every corner at the margin.
+    Return a free path (k, 2) along ``points`` (m, 2) that passes every corner at the margin.
 
-    Where a segment is blocked, it grazes a corner, or would without its vertices having stepped
-    aside: the path bends there as well.
+    A segment is blocked only where it grazes a corner, possibly because its ends were moved off
+    their corners: then the path gets a vertex there as well.
     """
     aside = np.empty((GRAZED_MAX * len(points), 2))
     aside[0] = points[0]

@@ -14,7 +14,7 @@ from hnr_planner.core.kernels.borrowed import borrowed
 from hnr_planner.core.kernels.kernel import kernel
 from hnr_planner.core.kernels.streams import Stream, uniform
 from hnr_planner.core.lengths import norm
-from hnr_planner.core.planning.planner import Problem, reaches_goal, to_goal, with_room
+from hnr_planner.core.planning.planner import Problem, reaches_goal, to_goal, with_capacity
 from hnr_planner.core.planning.planners.nearest import (
     BoxTree,
     empty_box_tree,
@@ -27,8 +27,8 @@ from hnr_planner.core.trees import branch
 import numpy as np
 from numpy.typing import NDArray
 
-#: Proposals drawn in a row for each transition asked for: most of the box may lie outside the
-#: space, and a search that only rejects has to return so that it can be stopped.
+#: Largest number of proposals for each transition: most of the box may lie outside the space, and
+#: a search whose proposals are all rejected has to return so that it can be stopped.
 PROPOSALS_PER_ITERATION = 64
 
 
@@ -90,7 +90,7 @@ class RRTSearch:
 
     @property
     def path(self) -> Floats:
-        """The branch of the newest vertex, and the goal."""
+        """Path (m, dim): the branch of the newest vertex, and an exact goal."""
         last = self._n_vertices - 1
         return to_goal(self.problem, branch(self._vertices, self._parents, last))
 
@@ -103,7 +103,7 @@ class RRTSearch:
         """Handle at most ``n_iterations`` further proposals inside the space."""
         if self.solved:
             return
-        self._make_room(self._n_vertices + n_iterations)
+        self._grow_arrays(self._n_vertices + n_iterations)
         self._n_vertices, iterations, rejected, self.solved = _grow(
             self.problem,
             self.max_step,
@@ -117,9 +117,9 @@ class RRTSearch:
         self.iterations += iterations
         self.rejected += rejected
 
-    def _make_room(self, rows: int) -> None:
-        self._vertices = with_room(self._vertices, rows)
-        self._parents = with_room(self._parents, rows)
+    def _grow_arrays(self, rows: int) -> None:
+        self._vertices = with_capacity(self._vertices, rows)
+        self._parents = with_capacity(self._parents, rows)
         if len(self._tree.following) < rows:
             self._tree = grown(self._tree, len(self._vertices))
 

@@ -1,10 +1,10 @@
 """
-RRT-Connect (Kuffner and LaValle 2000): RRTs from both ends, each drawn to the other's new vertex.
+RRT-Connect (Kuffner and LaValle 2000): RRTs from both ends, extended towards each other.
 
-In turn a tree is extended towards a uniform point of the box around the space, by one step from
-the vertex nearest to it; when that step is free, the other tree takes step after step towards its
-end. They meet when such a step arrives. A step that is not free adds nothing. As in OMPL, a step
-is a fifth of the box's diagonal at most.
+The trees are extended alternately towards a uniform point of the box around the space, by one step
+from the vertex nearest to it. When that step is free, the other tree takes step after step towards
+the new vertex, and the trees are connected when a step reaches it. A step that is not free adds
+nothing. As in OMPL, a step is at most a fifth of the box's diagonal.
 """
 
 from dataclasses import dataclass, field
@@ -40,27 +40,27 @@ from numpy.typing import NDArray
 
 #: Longest step when none is given, as a fraction of the box's diagonal.
 STEP = 0.2
-#: Rows of the table at first.
-ROOM = 64
+#: Rows that the arrays hold at first.
+INITIAL_CAPACITY = 64
 #: Outcomes of a step: it is not free, it is free, or it is free and arrives.
 TRAPPED, ADVANCED, REACHED = 0, 1, 2
 
 
 class BoxTrees(NamedTuple):
     """
-    Two trees, and what their steps need to know of them.
+    Two trees, with an index of nearest vertices and the state of the next step.
 
     Attributes
     ----------
     table : TreePair
         Their vertices.
     boxes : BoxTree
-        The vertices, to find a tree's nearest; the trees are its roots.
+        Index of nearest vertices; each tree is one of its roots.
     turn : (1,) int64
         The tree that is extended next.
     drawn : (2,) int64
-        Row of the vertex of that tree from which it is drawn to the other's new vertex, and that
-        one's row; NONE where it is extended towards a uniform point.
+        Row of the vertex to step from and row of the other tree's vertex to step towards; NONE
+        where the tree is extended towards a uniform point.
 
     """
 
@@ -109,8 +109,8 @@ class RRTConnectSearch(TwoTreeSearch):
     def __post_init__(self) -> None:
         problem = self.problem
         self._trees = BoxTrees(
-            table=empty_trees(ROOM, len(problem.start)),
-            boxes=empty_box_tree(problem.lower, problem.upper, ROOM, n_roots=2),
+            table=empty_trees(INITIAL_CAPACITY, len(problem.start)),
+            boxes=empty_box_tree(problem.lower, problem.upper, INITIAL_CAPACITY, n_roots=2),
             turn=np.zeros(1, dtype=np.int64),
             drawn=np.full(2, NONE),
         )
@@ -129,7 +129,7 @@ class RRTConnectSearch(TwoTreeSearch):
         """Take at most ``n_iterations`` further steps."""
         goal = self.iterations + n_iterations
         while not self.solved:
-            # Most steps are blocked: there is room for some vertices, not for one from each step.
+            # Most steps are blocked, so the arrays hold fewer vertices than there are steps.
             self._ends, taken = _grow(
                 self.problem,
                 self.max_step,
@@ -140,9 +140,9 @@ class RRTConnectSearch(TwoTreeSearch):
             self.iterations += taken
             if self.iterations == goal:
                 break
-            self._make_room()
+            self._grow_arrays()
 
-    def _make_room(self) -> None:
+    def _grow_arrays(self) -> None:
         trees = self._trees
         table = with_rows(trees.table, len(trees.table.parents) + 1)
         boxes = grown(trees.boxes, len(table.parents))
@@ -151,7 +151,7 @@ class RRTConnectSearch(TwoTreeSearch):
 
 @kernel
 def _plant(problem, trees):
-    """Plant a root at the start, and one at the goal where a path leads there."""
+    """Add a root at the start and, where it is in the same component, one at the goal."""
     trees.table.vertices[0] = problem.start
     _add(trees, 0, NONE)
     if component(problem.space, problem.goal) == component(problem.space, problem.start):
@@ -161,7 +161,7 @@ def _plant(problem, trees):
 
 @kernel
 def _grow(problem, max_step, trees, rng, n_iterations):
-    """Take steps until the trees meet or have no room: (the ends that met, steps taken)."""
+    """Take steps until the trees are connected or full: (rows that connect them, steps taken)."""
     problem, trees, rng = borrowed(problem), borrowed(trees), borrowed(rng)
     towards, vertices, drawn = np.empty(len(problem.start)), trees.table.vertices, trees.drawn
     n_trees = 2 if trees.table.sizes[1] > 0 else 1
@@ -186,7 +186,7 @@ def _grow(problem, max_step, trees, rng, n_iterations):
         if tree == 0 and problem.goal_radius > 0.0 and reaches_goal(problem, vertices[row]):
             return (row, NONE), i + 1
         if target != NONE:
-            # Nearer to the target than all of its tree: drawn on from there.
+            # The new vertex is nearer to the target than all others: the next step begins there.
             drawn[0] = row
         elif n_trees == 2:
             drawn[0], drawn[1] = nearest(trees.boxes, vertices, vertices[row], 1 - tree), row
@@ -212,7 +212,7 @@ def _step(problem, max_step, vertex, target, end):
 
 @kernel
 def _add(trees, tree, parent):
-    """Make the vertex written in the first free row one of a tree; return that row."""
+    """Add the vertex in the first free row to a tree, below row ``parent``; return its row."""
     row = add_vertex(trees.table, tree, parent)
     insert(trees.boxes, trees.table.vertices, row, tree)
     return row

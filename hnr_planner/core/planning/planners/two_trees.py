@@ -1,8 +1,8 @@
 """
-What searches with a tree at each end share: a table of both trees, and the path through both.
+Searches with a tree at each end: a table of both trees, and the path through both.
 
 Row 0 is the root of the start's tree; the goal's, where there is one, follows. A search is solved
-when a vertex of one tree is connected to one of the other, or when the only tree has come into
+when a vertex of one tree is connected to one of the other, or when the only tree has a vertex in
 the goal region.
 """
 
@@ -13,7 +13,7 @@ from typing import ClassVar, NamedTuple
 from hnr_planner.core.checks import Floats
 from hnr_planner.core.kernels.kernel import kernel
 from hnr_planner.core.kernels.streams import Stream
-from hnr_planner.core.planning.planner import Problem, to_goal, with_room
+from hnr_planner.core.planning.planner import Problem, to_goal, with_capacity
 from hnr_planner.core.trees import branch, NONE
 import numpy as np
 from numpy.typing import NDArray
@@ -41,20 +41,20 @@ class TreePair(NamedTuple):
 
 @kernel
 def empty_trees(rows, dim):
-    """Return trees without vertices, with room for so many rows."""
+    """Return two trees without vertices, with a common capacity of ``rows`` vertices (dim,)."""
     vertices, parents = np.empty((rows, dim)), np.empty(rows, dtype=np.int64)
     return TreePair(vertices, parents, np.zeros(2, dtype=np.int64))
 
 
 @kernel
 def first_free_row(trees):
-    """Return the row of the next vertex."""
+    """Return the row in which the next vertex is written."""
     return trees.sizes[0] + trees.sizes[1]
 
 
 @kernel
 def add_vertex(trees, tree, parent):
-    """Make the vertex written in the first free row one of a tree; return that row."""
+    """Add the vertex in the first free row to a tree, below row ``parent``; return its row."""
     row = first_free_row(trees)
     trees.parents[row] = parent
     trees.sizes[tree] += 1
@@ -62,11 +62,11 @@ def add_vertex(trees, tree, parent):
 
 
 def with_rows(trees: TreePair, rows: int) -> TreePair:
-    """Return the trees with room for so many rows at least."""
+    """Return the trees with a capacity of ``rows`` at least."""
     if len(trees.parents) >= rows:
         return trees
-    vertices = with_room(trees.vertices, rows)
-    return trees._replace(vertices=vertices, parents=with_room(trees.parents, len(vertices)))
+    vertices = with_capacity(trees.vertices, rows)
+    return trees._replace(vertices=vertices, parents=with_capacity(trees.parents, len(vertices)))
 
 
 @dataclass
@@ -74,12 +74,12 @@ class TwoTreeSearch(ABC):
     """
     Search with a tree at each end.
 
-    A goal region whose centre cannot be reached has no second tree: the first has to find into it.
+    A goal region whose centre cannot be reached has no second tree: the first has to enter it.
 
     Attributes
     ----------
     problem : Problem
-        What is searched for.
+        The problem to solve, kernel frame.
     rng : Stream
         Stream of every draw.
     iterations : int
@@ -91,7 +91,7 @@ class TwoTreeSearch(ABC):
     rng: Stream
     iterations: int = field(init=False, default=0)
     taut: ClassVar[bool] = False
-    #: Vertices that connect the trees, the start tree's first; (k, NONE) for one in the region.
+    #: Rows that connect the trees, that of the start's first; (k, NONE) for one in the region.
     _ends: tuple[int, int] = field(init=False, default=(NONE, NONE))
 
     @property
@@ -101,7 +101,7 @@ class TwoTreeSearch(ABC):
 
     @property
     def solved(self) -> bool:
-        """Whether the trees have met, or the first has come into the goal region."""
+        """Whether the trees are connected, or the first has a vertex in the goal region."""
         return self._ends[0] != NONE
 
     @property
@@ -120,7 +120,7 @@ class TwoTreeSearch(ABC):
 
     @property
     def path(self) -> Floats:
-        """The branch (m, dim) of each tree that leads to where they met."""
+        """Path (m, dim) along the branches that connect the roots, or into the goal region."""
         through = _through(self.samples, self.parents, *self._ends)
         return through if self._ends[1] != NONE else to_goal(self.problem, through)
 

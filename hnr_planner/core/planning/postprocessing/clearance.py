@@ -1,9 +1,9 @@
 """
-Increase the clearance of a path where there is room, and pass narrow doors all the same.
+Increase the clearance of a path where there is space; narrow doors are still passed.
 
-A metre of a path costs 1 metre where the wall is at least the wanted ``clearance`` away, and
-``1 + WEIGHT (clearance / d - 1)`` metres at a distance ``d`` below. So a detour pays where it
-leads the path away from a wall, most of all where that is near, and in a door the middle is best.
+The cost of a path is the integral along it of 1 where the nearest wall is at least ``clearance``
+away, and of ``1 + WEIGHT (clearance / d - 1)`` where its distance ``d`` is less. So a detour pays
+where it moves the path away from a wall, most of all a near one, and in a door the middle is best.
 The path gets vertices where it comes too near; each is moved across the path while that lowers the
 cost, and those that are not needed any more are dropped.
 """
@@ -31,7 +31,7 @@ WEIGHT, NEAREST = 2.0, 0.01
 #: Bounds on the distance between points at which the clearance of a path is measured, and between
 #: its vertices, in units of the typical clearance of the space: both follow that of the wall.
 FINEST, COARSEST = 0.125, 1.0
-#: Passes of moving all vertices in a row.
+#: Largest number of passes over all vertices.
 PASSES = 10
 #: Shortest step across the path, as a fraction of the finest distance: steps have the coarsest at
 #: first, and are halved where they gain nothing.
@@ -49,7 +49,7 @@ class ClearanceCost(NamedTuple):
     walls : array
         The space's ``walls``.
     clearance : float
-        Distance from walls that is wanted, kernel frame.
+        Distance to keep from walls, kernel frame.
     finest, coarsest : float
         Bounds on the distance between points where the clearance is measured, kernel frame.
 
@@ -74,12 +74,12 @@ def increase_clearance(
     """
     Move a free path (m, dim) of the caller's frame away from walls, within the budget.
 
-    The ends stay. It passes each of the ``islands`` on the side where it did before, and never
-    costs more.
+    The ends are kept. The result passes each of the ``islands`` on the side where the path did,
+    and its cost is never larger.
     """
     cost = clearance_cost(space, clearance)
     before = points = space.to_kernel(path)
-    # Away from walls first, with few vertices; then with as many as narrow places need.
+    # First with few vertices; then with as many as narrow passages need.
     for each in (cost._replace(finest=cost.coarsest), cost):
         points = spread(each, points)
         _move_all(space, islands, each, points, budget)
@@ -94,7 +94,7 @@ def increase_clearance(
 def _move_all(
     space: Space, islands: Islands, cost: ClearanceCost, points: Floats, budget: Budget
 ) -> None:
-    """Move the vertices, in passes, until no step lowers the cost."""
+    """Move the vertices of ``points`` (m, 2), in place, until no step lowers the cost."""
     steps, costs = np.full(len(points), cost.coarsest), segment_costs(cost, points)
     for _ in range(PASSES):
         if budget.stop() is not None or not move(space.data, islands, cost, points, costs, steps):
@@ -120,7 +120,7 @@ def segment_costs(cost, points):
 
 @kernel
 def _segment_cost(cost, a, b, most):
-    """Return the cost of the segment a-b, summed until it is above ``most``."""
+    """Return the cost of the segment a-b, or of enough of it to be above ``most``."""
     length, covered, lack = distance(a, b), 0.0, 0.0
     if length == 0.0:
         return 0.0
@@ -138,7 +138,7 @@ def _segment_cost(cost, a, b, most):
 
 @kernel
 def spread(cost, points):
-    """Return the path with vertices at the ends of each piece that lacks clearance."""
+    """Return the path with vertices added where it lacks clearance, denser near walls."""
     dense, n_dense = np.empty((2 * len(points), points.shape[1])), 1
     dense[0] = points[0]
     for k in range(1, len(points)):
@@ -209,7 +209,7 @@ def _move_one(space, islands, cost, points, costs, k, step):
 
 @kernel
 def drop(space, islands, cost, points):
-    """Return the path without the vertices that can be dropped at hardly any cost."""
+    """Return the path without the vertices whose removal adds at most ``ADDED`` of the cost."""
     kept, n_kept, k = np.empty_like(points), 1, 0
     kept[0] = points[0]
     while k < len(points) - 1:

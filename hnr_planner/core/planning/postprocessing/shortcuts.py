@@ -1,13 +1,13 @@
 """
-Kernels that shorten a path by visibility: each only ever shortens, and counts its tests.
+Kernels that shorten a path by visibility; each returns the number of its visibility tests.
 
 ``relax``: the shortest path over some of the vertices, in their order. ``skip``: a vertex is
 followed by the last one visible from it. ``join``: random points of the path are joined. ``pull``:
-each vertex slides along its two segments until an obstacle is in the way, and the corner left
-there is cut off, so that the path comes to lie taut around obstacles.
+each vertex slides along its two segments up to the next obstacle, and the corner that remains is
+cut off, so that the path is taut around obstacles.
 
-Every segment of the result was tested as it is, from its first point to its last: in a space that
-samples its segments a part of a free segment need not be free.
+Every segment of the result was tested itself, from its first point to its last: in a space that
+tests segments at single points, a section of a free segment need not be free.
 
 With ``islands`` the path stays in its homology class: no segment is replaced by one that passes an
 island on the other side.
@@ -21,11 +21,11 @@ from hnr_planner.core.planning.homology import crossings, loop_signature, signat
 from hnr_planner.core.spaces.primitives import segment_is_free
 import numpy as np
 
-#: Largest number of tests from one vertex, each halfway to the one before.
+#: Largest number of tests from one vertex, where each is halfway to the one before.
 TESTS_PER_VERTEX_MAX = 64
 #: Halvings of the segment on which a vertex slides or its corner is cut.
 HALVINGS = 12
-#: Tests of one vertex that slides twice and is cut: the segments along the way, and the results.
+#: Largest number of tests for one vertex that slides twice and whose corner is cut.
 TESTS_OF_A_PULL = 1 + 3 * HALVINGS + 7
 #: Least gain for which a corner is cut, as a fraction of its two segments.
 LEAST_CUT = 1e-3
@@ -147,7 +147,7 @@ def _slide(space, islands, a, x, b, margin):
 
 @kernel
 def _cut(space, islands, a, x, b, margin):
-    """Cut off the corner a-x-b as far as is free; return the two ends, ``x`` for little gain."""
+    """Cut the corner a-x-b as far as is free; return its vertices (2, dim), or ``x`` (1, dim)."""
     free, blocked = 0.0, 1.0
     for _ in range(HALVINGS):
         middle = (free + blocked) / 2.0

@@ -1,8 +1,8 @@
 """
-Shorten paths by visibility: any two points of a path with a free segment between may be joined.
+Shorten paths by visibility: replace sections by free segments between points of the path.
 
-Every replacement is a straight line, so a path never gets longer, and in rounds it becomes taut.
-The work is bounded by the number of visibility tests.
+Every replacement is a straight line, so a path never gets longer, and repeated rounds pull it
+taut. The work is bounded by the number of visibility tests.
 """
 
 import math
@@ -57,7 +57,7 @@ def simplify(
     max_iterations : int
         Largest number of visibility tests.
     time_limit : float, optional
-        Seconds after which the path is returned as it is by then.
+        Seconds after which the path shortened so far is returned.
 
     Returns
     -------
@@ -100,7 +100,7 @@ def shorten(
     islands: Islands = NO_ISLANDS,
 ) -> Floats:
     """
-    Shorten a free path (m, dim) of the caller's frame within the budget; the ends stay.
+    Shorten a free path (m, dim) of the caller's frame within the budget; its ends are kept.
 
     It passes each of the ``islands`` on the side where it did before. Where the coordinates of the
     caller's frame round the result into an obstacle, the halves of the path are shortened instead.
@@ -166,10 +166,10 @@ def skip_vertices(
     islands: Islands = NO_ISLANDS,
 ) -> tuple[Floats, int]:
     """
-    Drop vertices of a path (m, dim) of the kernel frame that are not needed: (path, tests).
+    Drop vertices of a path (m, dim) of the kernel frame; return (path, number of tests).
 
-    In the plane each vertex is followed by the last one visible from it, and what that leaves is
-    pulled taut easily. In more dimensions it is not, so the shortest path over vertices is taken.
+    In the plane each vertex is followed by the last one visible from it, since the result is
+    easily pulled taut. In more dimensions it is not, so the shortest path over vertices is taken.
     """
     tests, before = 0, math.inf
     while MANY < len(points) < WORTHWHILE * before:

@@ -2,8 +2,8 @@
 Build the data of a roadmap: draws, corners, visibility, shortest paths, exits.
 
 Everything follows from uniform draws, one in each of a number of *slots*. After a change of the
-space only what it affects is computed again. A draw that stays where it was casts its rays with
-the same random numbers as before: a ray that ends where it did has met no change.
+space only what it affects is computed again. A draw that is kept casts its rays with the same
+random numbers as before: a ray with the same end has met no change.
 """
 
 from hnr_planner.core.cancellation import Event, in_chunks
@@ -37,16 +37,16 @@ from numpy.typing import NDArray
 
 #: Uniform draws that cast rays to find corners.
 N_DRAWS = 4096
-#: Fraction of the draws that guide requests (their exits are known), and fraction from which the
-#: shortest paths to those are computed to find the exits.
+#: Fraction of the draws that are guides, whose exits are computed, and fraction of the draws from
+#: which the shortest paths to the guides are followed to find these exits.
 GUIDE_FRACTION, SOURCE_FRACTION = 1 / 2, 1 / 16
-#: Largest number of nodes: their shortest paths fill a table of that size squared.
+#: Largest number of nodes; the table of shortest paths has the square of it.
 NODES_MAX = 3072
 #: Distance of a node from the corner of an obstacle, in units of the typical clearance.
 OFFSET = 1e-3
-#: Conversions of nodes to the caller's frame and back, after which most stay the same.
+#: Number of conversions of nodes to the caller's frame and back, which leaves most unchanged.
 ROUNDS = 8
-#: Purpose of random streams, beside those of the draws: to cast rays.
+#: Purpose of the random streams for rays, beside those of the draws.
 RAYS = 2
 
 
@@ -106,7 +106,7 @@ def _cast_and_find_corners(
     seed: int,
     cancel: Event | None,
 ) -> tuple[Floats, Floats, tuple[Floats, Floats]]:
-    """Return rays, new corners (n, dim), and a box (lower, upper) around what was opened."""
+    """Return rays, new corners (n, dim), and a box (lower, upper) around newly free space."""
     rays, known = np.full((2, len(draws), N_RAYS, space.dim), np.nan)
     known[stays] = before.rays[: len(draws)][stays[: len(before.rays)]]
     opened_box = np.full(space.dim, np.inf), np.full(space.dim, -np.inf)
@@ -128,8 +128,8 @@ def _choose_nodes(
     """
     Return the nodes (n, dim) among old nodes and corners, and which each was before, or NONE.
 
-    Corners that are found often are found early, and so are not among those for which there is no
-    room. Old nodes that no shortest path uses come last.
+    At most ``NODES_MAX`` are kept: old nodes on shortest paths first, then corners in the order in
+    which they were found, which favours those found often, then the other old nodes.
     """
     old = np.flatnonzero(are_free(space.data, before.nodes))
     new = _stable(space, corners)
@@ -170,7 +170,11 @@ def _known_visibility(
     rows: NDArray[np.int64],
     columns: NDArray[np.int64],
 ) -> Visibility:
-    """Return the visibility known before for new rows and columns; UNKNOWN where there is none."""
+    """
+    Return the visibility (k, n) that pairs had before a change; UNKNOWN where they had none.
+
+    ``rows`` (k,) and ``columns`` (n,) are the old indices of the pairs' points, or NONE.
+    """
     known = np.full((len(rows), len(columns)), UNKNOWN, dtype=np.uint8)
     old_rows, old_columns = np.flatnonzero(rows != NONE), np.flatnonzero(columns != NONE)
     known[np.ix_(old_rows, old_columns)] = visibility[np.ix_(rows[old_rows], columns[old_columns])]
@@ -187,7 +191,7 @@ def _resolve(
     opened_box: tuple[Floats, Floats],
     cancel: Event | None,
 ) -> None:
-    """Compute the unknown ``visibility`` (k, n), and what the opened box may have changed."""
+    """Compute the unknown entries of ``visibility`` (k, n), and those through the opened box."""
     for chunk in in_chunks(len(points), cancel):
         if (opened_box[0] <= opened_box[1]).all():
             mark_unknown_through(*opened_box, points[chunk], others, visibility[chunk])
@@ -201,7 +205,7 @@ def _repair_paths(
     visibility: Visibility,
     cancel: Event | None,
 ) -> ShortestPaths:
-    """Return the shortest paths between nodes: those known before, repaired."""
+    """Return the shortest paths between nodes, repaired from those before the change."""
     paths = empty_paths(len(nodes))
     old = np.flatnonzero(was != NONE)
     if len(old) > 0:
@@ -230,7 +234,7 @@ def _find_exits(
     paths: ShortestPaths,
     cancel: Event | None,
 ) -> NDArray[np.bool_]:
-    """Return through which nodes (g, n) shortest paths from the first guides reach each guide."""
+    """Return the exits (g, n) bool: nodes over which shortest paths reach each of the guides."""
     is_exit = np.zeros(guide_visibility.shape, dtype=bool)
     edges = edges_of(guides, nodes, guide_visibility)
     for chunk in in_chunks(min(n_sources, len(guides)), cancel):

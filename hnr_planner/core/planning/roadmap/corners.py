@@ -1,10 +1,10 @@
 """
-Where short paths bend: the corners that Hit-and-Run steps go around.
+Corners at which short paths bend, found by Hit-and-Run steps.
 
 Two steps from one point end at two points visible from it. Where the segment between these is not
-free, the path through the first point is pulled taut and comes to lie around the corners of the
-obstacle between. They are found by visibility alone, so in any space: in the plane they are the
-corners of the obstacles, in more dimensions points on their edges.
+free, the path through the first point, pulled taut, bends at corners of the obstacle between them.
+That takes visibility alone, so it works in any space: in the plane the bends are the corners of
+obstacles, in more dimensions points on their edges.
 """
 
 from hnr_planner.core.kernels.borrowed import borrowed
@@ -14,7 +14,7 @@ from hnr_planner.core.sampling.draws import hit_and_run_step
 from hnr_planner.core.spaces.primitives import contains, first_exit, segment_is_free
 import numpy as np
 
-#: Largest number of corners between two points: other pairs find the rest of a longer bend.
+#: Largest number of corners between two points; other pairs find the rest of a longer bend.
 CORNERS_MAX = 16
 
 
@@ -32,8 +32,8 @@ def find_corners(space, points, rays, known, offset):
     """
     Find the corners (c, dim) between the ends of successive rays from the same point.
 
-    Pairs are left out that are the same in ``known``, which has the shape of ``rays`` (n, k, dim)
-    and holds NaN where nothing is known. A corner is taken ``offset`` from the obstacle.
+    Pairs that are equal in ``known``, the earlier rays (n, k, dim) or NaN, are left out. A corner
+    is moved off the obstacle by ``offset``.
     """
     space, points, rays = borrowed(space), borrowed(points), borrowed(rays)
     corners = np.empty((len(points) * rays.shape[1] * CORNERS_MAX, points.shape[1]))
@@ -67,22 +67,22 @@ def _corners_around(space, a, x, b, offset, corners):
 @kernel
 def _corner_behind(space, a, x, b, offset, corner):
     """
-    Find the last point from ``x`` to ``a`` visible from ``b``: return it, write the corner there.
+    Return the last point from ``x`` to ``a`` visible from ``b``; write the corner behind it.
 
-    A little behind that point the line to ``b`` is blocked, by a corner that both lines touch. The
-    point written is always the same one for one corner, and visible wherever the corner is.
+    Just behind that point the segment to ``b`` is blocked by the corner. The point written is the
+    same for every pair at one corner, and visible from everywhere that the corner is visible from.
     """
-    way = a - x
+    step = a - x
     free, middle, blocked = 0.0, 0.5, 1.0
     # To the last bit: a line that runs along a wall touches it anywhere but at its end.
     while free < middle < blocked:
-        if segment_is_free(space, b, x + middle * way):
+        if segment_is_free(space, b, x + middle * step):
             free = middle
         else:
             blocked = middle
         middle = (free + blocked) / 2.0
-    last = x + free * way
-    s = min(first_exit(space, b, x + blocked * way - b, 0.0, 1.0), 1.0)
+    last = x + free * step
+    s = min(first_exit(space, b, x + blocked * step - b, 0.0, 1.0), 1.0)
     corner[:] = b + s * (last - b)
     _move_off_obstacle(space, corner, offset)
     return last
@@ -104,28 +104,28 @@ def _move_off_obstacle(space, x, offset):
 @kernel
 def widen_to_opened(space, points, rays, known, lower, upper):
     """
-    Widen a box to hold the points where ``space``, as it was, blocked rays that are new.
+    Widen a box to hold the points at which ``space``, before a change, blocks rays that are new.
 
-    So it comes to hold what has been opened since.
+    So the box covers the space that has become free since.
     """
     for point in range(len(points)):
         for k in range(rays.shape[1]):
             if (rays[point, k] == known[point, k]).all():
                 continue
-            way = rays[point, k] - points[point]
-            s = first_exit(space, points[point], way, 0.0, 1.0)
+            step = rays[point, k] - points[point]
+            s = first_exit(space, points[point], step, 0.0, 1.0)
             if s < 1.0:
-                for i in range(len(way)):
-                    lower[i] = min(lower[i], points[point, i] + s * way[i])
-                    upper[i] = max(upper[i], points[point, i] + s * way[i])
+                for i in range(len(step)):
+                    lower[i] = min(lower[i], points[point, i] + s * step[i])
+                    upper[i] = max(upper[i], points[point, i] + s * step[i])
 
 
 @kernel
 def distinct(points, n_kept, radius):
     """
-    Return which of ``points`` (k, dim) to keep so that none is doubled: (k,) bool.
+    Return which of ``points`` (k, dim) to keep so that none is a duplicate: (k,) bool.
 
-    The first ``n_kept`` are kept; of others within ``radius`` of each other the first is.
+    The first ``n_kept`` are kept, and others unless they are within ``radius`` of one kept before.
     """
     is_kept = np.zeros(len(points), dtype=np.bool_)
     order = np.argsort(points[:, 0], kind='mergesort')
@@ -138,7 +138,7 @@ def distinct(points, n_kept, radius):
 
 @kernel
 def _kept_is_near(points, is_kept, order, rank, radius):
-    """Return whether a point that is kept is near the one of this rank in the order of x."""
+    """Return whether a kept point is within ``radius`` of the point of this rank in x."""
     x = points[order[rank]]
     for step in (-1, 1):
         other = rank + step

@@ -1,4 +1,4 @@
-"""Data of a roadmap."""
+"""Data of a roadmap: draws, rays, nodes, visibility, shortest paths and exits."""
 
 from dataclasses import dataclass
 
@@ -15,27 +15,27 @@ N_RAYS = 32
 @dataclass(frozen=True, eq=False)
 class RoadmapData:
     """
-    All that a roadmap has computed of its space, kernel frame.
+    Everything that a roadmap has computed of its space, kernel frame.
 
     Attributes
     ----------
     space : Space
     n_draws : int
-        Slots; a space without free points fills none.
+        Number of slots for draws; none is filled in a space without free points.
     age : int
-        Number of times that it was built or repaired.
+        Number of times that the roadmap was built or updated.
     draws : (k, dim)
         Uniform draws, one for each slot.
     rays : (k, N_RAYS, dim)
         Ends of Hit-and-Run steps from each draw.
     nodes : (n, dim)
-        Corners of the space, a little off the obstacles.
+        Corners of obstacles, moved a little into free space.
     visibility : (n, n), guide_visibility (g, n)
-        Which nodes are visible from the nodes, and from the first g draws.
+        Visibility of the nodes from the nodes, and from the first g draws, the *guides*.
     shortest_paths : ShortestPaths
-        Between the nodes.
+        Shortest paths between the nodes.
     exits : Exits
-        Where shortest paths leave the first g draws.
+        Nodes over which shortest paths leave the guides.
 
     """
 
@@ -52,7 +52,7 @@ class RoadmapData:
 
 
 def empty_roadmap(space: Space) -> RoadmapData:
-    """Return the data of a space before a first draw."""
+    """Return the data of a space without draws."""
     none, no_pairs = np.empty((0, space.dim)), np.empty((0, 0), dtype=np.uint8)
     exits = exits_of(none, no_pairs.astype(bool), *space.kernel_bounds)
     rays = np.empty((0, N_RAYS, space.dim))

@@ -1,4 +1,4 @@
-"""Draw uniform points of a space by Hit-and-Run steps; renew them after a change of the space."""
+"""Draw uniform points of a space by Hit-and-Run steps; update them after a change of the space."""
 
 from hnr_planner.core.cancellation import Event, in_chunks
 from hnr_planner.core.checks import Floats
@@ -13,9 +13,9 @@ from hnr_planner.core.spaces.space import Space
 import numpy as np
 from numpy.typing import NDArray
 
-#: Proposals for a point to walk from, and Hit-and-Run steps from there to a draw.
+#: Uniform proposals for each starting point, and Hit-and-Run steps from there to a draw.
 PROPOSALS, STEPS = 64, 8
-#: Purposes of random streams: points to walk from, the walks.
+#: Purposes of random streams: starting points, walks.
 ROOTS, WALK = 0, 1
 
 
@@ -23,10 +23,11 @@ def draw_slots(
     before: RoadmapData, space: Space, n_draws: int, seed: int, cancel: Event | None
 ) -> tuple[Floats, NDArray[np.bool_]]:
     """
-    Return a uniform draw for each slot (k, dim), and which of them are those from before (k,).
+    Return a uniform draw for each slot (k, dim), and which of them were kept (k,) bool.
 
-    Each slot draws afresh. The old draw stays, unless it is not free any more or the new one is
-    where nothing was free: so draws that were uniform on the old space are so on the new one.
+    Each slot makes a new draw. It keeps its old one, unless that is not free any more or the new
+    one was not free before: so draws that were uniform on the old space are uniform on the new
+    one.
     """
     roots = np.empty((n_draws, space.dim))
     n_roots = _free_points(
@@ -62,7 +63,7 @@ def _free_points(space, lower, upper, rng, proposals, points):
 
 @kernel
 def _walk(space, rng, steps, points):
-    """Move each of ``points`` (k, dim) by so many Hit-and-Run steps."""
+    """Move each of ``points`` (k, dim) by ``steps`` Hit-and-Run steps."""
     space, rng, points = borrowed(space), borrowed(rng), borrowed(points)
     y = np.empty(points.shape[1])
     for k in range(len(points)):

@@ -2,8 +2,8 @@
 Exits: the nodes over which shortest paths leave the surroundings of a point.
 
 The shortest paths from other draws reach a draw through few of the nodes visible from it: its
-*exits*. Paths from a point nearby leave over the same ones. Draws are found through square bins
-over the first two coordinates.
+*exits*. Paths from a point nearby mostly leave over the same nodes. Square bins over the first two
+coordinates find the draws near a point.
 """
 
 import math
@@ -22,9 +22,9 @@ from numpy.typing import NDArray
 
 #: Draws in one bin, on average over the whole box.
 DRAWS_IN_A_BIN = 2.0
-#: Nearest draws of a point whose exits are tested, and visible nodes after which that ends.
+#: Number of nearest draws whose exits are tested, and of visible nodes that end the tests.
 NEIGHBOURS, ENOUGH = 8, 16
-#: Most Hit-and-Run steps from a point without visible nodes to one that has some.
+#: Largest number of Hit-and-Run steps from a point without visible nodes to one with some.
 STEPS_MAX = 64
 
 
@@ -42,7 +42,7 @@ class Exits(NamedTuple):
     first_exit : (k + 1,) int64
         Index where the exits of each draw begin.
     nodes : (exits,) int64
-        Exits of all draws.
+        Exits of all draws, draw by draw.
 
     """
 
@@ -54,7 +54,7 @@ class Exits(NamedTuple):
 
 
 def exits_of(draws: Floats, is_exit: NDArray[np.bool_], lower: Floats, upper: Floats) -> Exits:
-    """Return ``draws`` (k, dim) in a box with the nodes that ``is_exit`` (k, n) marks."""
+    """Return the exits of ``draws`` (k, dim) in a box: the nodes that ``is_exit`` (k, n) marks."""
     useful = is_exit.any(axis=1)
     draws, is_exit = draws[useful], is_exit[useful]
     extent = (upper - lower)[:2]
@@ -76,10 +76,10 @@ def exits_of(draws: Floats, is_exit: NDArray[np.bool_], lower: Floats, upper: Fl
 @kernel
 def mark_exits(space, draws, edges, sources, distance, is_exit):
     """
-    Follow the shortest paths from the draws numbered ``sources`` to all draws, over the nodes.
+    Mark the exits of all draws, by the shortest paths from the draws numbered ``sources``.
 
-    Marks in ``is_exit`` (k, n) the nodes through which each draw is reached from one that is not
-    visible from it.
+    Sets ``is_exit`` (k, n) for the last node before a draw on a path from a draw not visible from
+    it.
     """
     space, draws, edges = borrowed(space), borrowed(draws), borrowed(edges)
     from_source = np.empty(len(distance), dtype=np.float32)
@@ -105,7 +105,7 @@ def visible_nodes(space, nodes, exits, x, leaves):
     Return the nodes visible from ``x`` among the exits of the nearest draws, and their distances.
 
     Where none of those is visible all nodes are tested. Segments are tested in the direction of
-    the path: from ``x`` when it leaves there, else from the nodes.
+    the path: from ``x`` when ``leaves``, else from the nodes to ``x``.
     """
     visible, distance = np.empty(len(nodes), dtype=np.int64), np.empty(len(nodes))
     if not contains(space, x):
@@ -125,7 +125,7 @@ def visible_nodes(space, nodes, exits, x, leaves):
 
 @kernel
 def _add_visible(space, x, nodes, candidates, leaves, is_new, visible, distance, n):
-    """Write the candidates that are new and visible behind the first ``n``; return the number."""
+    """Append visible candidates, each tested once, to the first ``n``; return the new number."""
     for node in candidates:
         if is_new[node]:
             is_new[node] = False
@@ -141,7 +141,7 @@ def _add_visible(space, x, nodes, candidates, leaves, is_new, visible, distance,
 
 @kernel
 def _nearest_draws(exits, x, near):
-    """Write the draws nearest to ``x`` of those in the bins around it; return their number."""
+    """Write the nearest draws in the bins around ``x``, in order; return their number."""
     nearest_squared = np.empty(len(near))
     n, at = 0, bin_of(exits.bins, x)
     for row in (-1, 0, 1):

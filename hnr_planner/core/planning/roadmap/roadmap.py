@@ -2,9 +2,9 @@
 Roadmaps: the shortest paths between the corners of a map, for many requests.
 
 Short paths bend at the corners of obstacles, so these are the nodes, and a table holds the
-shortest paths between all of them. A request is left to connect its ends: start and goal try the
-*exits* of the Hit-and-Run draws around them, and of all pairs of visible exits the one is taken
-that makes the whole path shortest.
+shortest paths between all of them. A request only connects its ends: the nodes to try are the
+*exits* of the Hit-and-Run draws near start and goal, and of all pairs of visible exits the one
+with the shortest path is taken.
 """
 
 from dataclasses import dataclass
@@ -32,16 +32,16 @@ from numpy.typing import NDArray
 @dataclass(frozen=True, eq=False, repr=False)
 class Roadmap:
     """
-    A planner that has explored its space beforehand: ``Roadmap.build``.
+    A planner with the shortest paths of its space computed in advance: ``Roadmap.build``.
 
-    It never changes: ``update`` and ``grow`` return new ones. A result is a pure function of the
+    It is immutable: ``update`` and ``grow`` return new ones. A result is a pure function of the
     roadmap, the request and its seed; the seed matters only where no node is visible from start
     or goal.
 
     Attributes
     ----------
     seed : int
-        The seed that builds it again.
+        The seed that reproduces it.
 
     """
 
@@ -57,12 +57,12 @@ class Roadmap:
         """
         Build the roadmap of a space.
 
-        It takes seconds: work is bounded by counts, and does not grow with the map's size.
+        It takes seconds: the work is bounded by counts, whatever the size of the map.
 
         Parameters
         ----------
         space : Space
-            Any space of the plane, of one component or more, even without free points.
+            Any space of dimension 2, also with several components or without free points.
         seed : int, optional
             Equal seeds give equal roadmaps. Fresh when left out.
         cancel : threading.Event, optional
@@ -97,7 +97,7 @@ class Roadmap:
 
     def grow(self, *, cancel: Event | None = None) -> 'Roadmap':
         """
-        Return a roadmap of the same space that knows more: from twice as many draws.
+        Return a roadmap of the same space from twice as many draws, with shorter paths.
 
         Raises
         ------
@@ -110,7 +110,7 @@ class Roadmap:
 
     @property
     def space(self) -> Space:
-        """The space that it was built for; requests have to be for the same one."""
+        """The space that it was built for; requests have to be for the same object."""
         return self._data.space
 
     @property
@@ -120,7 +120,7 @@ class Roadmap:
 
     def start(self, problem: Problem, rng: Stream) -> PathSearch:
         """
-        Return a solved search, or start trees where the roadmap does not connect start and goal.
+        Return a solved search, or an ``Auto`` search where the roadmap does not connect the ends.
 
         Raises
         ------
@@ -143,13 +143,14 @@ class Roadmap:
 @dataclass
 class SolvedSearch:
     """
-    A search that was solved without a transition.
+    A search solved by the roadmap, without a transition.
 
     Attributes
     ----------
     path : (m, dim)
+        Path from start to goal, kernel frame.
     taut : bool
-        Whether pulling it taut gains nothing.
+        Whether the path is taut already, so that shortening gains nothing.
 
     """
 
@@ -165,7 +166,7 @@ class SolvedSearch:
 
     @property
     def parents(self) -> NDArray[np.int64]:
-        """Each vertex was reached from the one before."""
+        """Index (m,) of the vertex before each; -1 for the start."""
         return np.arange(-1, len(self.path) - 1)
 
     @property
@@ -178,7 +179,7 @@ class SolvedSearch:
 
 
 def _check_plane(space: Space) -> None:
-    """Raise RequestError where shortest paths bend anywhere along edges, not at few corners."""
+    """Raise RequestError for dim > 2, where shortest paths bend anywhere along edges."""
     if space.dim != 2:
         raise RequestError(
             f'a roadmap is of the corners of a plane: space must have dimension 2, this '
@@ -199,7 +200,8 @@ def shortest_path(space, nodes, paths, exits, ahead, back):
     """
     Return the shortest path (m, dim) over nodes that joins two walks; (0, dim) if there is none.
 
-    The walks (k, dim) lead from start and from goal to points from which a node is visible.
+    The walks (k, dim) begin at the start and at the goal; a node is visible from their last
+    points.
     """
     space, nodes, paths, exits = borrowed(space), borrowed(nodes), borrowed(paths), borrowed(exits)
     leaving, before = visible_nodes(space, nodes, exits, ahead[-1], True)
@@ -212,7 +214,7 @@ def shortest_path(space, nodes, paths, exits, ahead, back):
                 shortest, first, last = length, leaving[i], arriving[j]
     if first == NONE:
         return np.empty((0, nodes.shape[1]))
-    # The exits of draws nearby are a guess: the path may be joined further on.
+    # Later nodes of the path may be visible too: leave out those before.
     while first != last and segment_is_free(space, ahead[-1], nodes[paths.previous[last, first]]):
         first = paths.previous[last, first]
     while first != last and segment_is_free(space, nodes[paths.previous[first, last]], back[-1]):

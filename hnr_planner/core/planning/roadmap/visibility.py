@@ -1,9 +1,9 @@
 """
 Visibility between points, and the shortest paths along it.
 
-Both are repaired after a change rather than computed anew: a pair of points is tested only where
-its visibility is unknown, and of a table of shortest paths only what lost an edge or gained one is
-searched again. To build a table is to repair an empty one.
+After a change both are repaired instead of recomputed: a pair of points is tested only where its
+visibility is unknown, and shortest paths are searched again only where they lost an edge or may
+use a new one. A table is built by repairing an empty one.
 """
 
 import heapq
@@ -44,7 +44,7 @@ def resolve(space, points, others, visibility):
 
 @kernel
 def mark_unknown_through(lower, upper, points, others, visibility):
-    """Make every hidden pair unknown whose segment meets the box from ``lower`` to ``upper``."""
+    """Mark hidden pairs as unknown whose segment meets the box from ``lower`` to ``upper``."""
     for i in range(len(points)):
         for j in range(len(others)):
             if visibility[i, j] == HIDDEN and _crosses(points[i], others[j], lower, upper):
@@ -68,14 +68,14 @@ def _crosses(a, b, lower, upper):
 
 class Edges(NamedTuple):
     """
-    Edges from points to those that are visible from them.
+    Edges from points to the points visible from them.
 
     Attributes
     ----------
     first : (n + 1,) int64
-        Where the edges of each point begin; the last entry is their number.
+        Index of the first edge of each point; the last entry is the number of edges.
     to : (edges,) int64
-        The point that each leads to.
+        Index of the end point of each edge.
     length : (edges,) float32
         Length of the edge.
 
@@ -114,7 +114,7 @@ class ShortestPaths(NamedTuple):
 
 
 def empty_paths(n_nodes: int) -> ShortestPaths:
-    """Return the table with the paths from each node to itself, and no other."""
+    """Return a table with the paths from each node to itself only."""
     distance = np.full((n_nodes, n_nodes), np.inf, dtype=np.float32)
     np.fill_diagonal(distance, 0.0)
     return ShortestPaths(distance, np.full((n_nodes, n_nodes), NONE, dtype=np.int16))
@@ -123,10 +123,10 @@ def empty_paths(n_nodes: int) -> ShortestPaths:
 @kernel
 def repair(paths, rows, edges, visibility, new, new_length):
     """
-    Repair the shortest paths from the nodes of ``rows`` where edges have come or gone.
+    Repair the shortest paths from the nodes of ``rows`` after edges were added or removed.
 
-    Dijkstra's algorithm (1959), begun where paths that are still intact meet nodes that have lost
-    theirs, and where one of the ``new`` edges (k, 2), of ``new_length`` (k,), shortens a path.
+    Dijkstra's algorithm (1959), started at the intact neighbours of nodes whose path lost an edge,
+    and at those of the ``new`` edges (k, 2), of ``new_length`` (k,), that shorten a path.
     """
     paths, edges, visibility = borrowed(paths), borrowed(edges), borrowed(visibility)
     n_nodes = len(visibility)
@@ -159,7 +159,7 @@ def repair(paths, rows, edges, visibility, new, new_length):
 
 @kernel
 def _mark_intact(root, previous, visibility, intact, trail):
-    """Write 1 for nodes whose path from the root still has all its edges, else 0."""
+    """Write 1 to ``intact`` (n,) for nodes whose path from the root has all its edges, else 0."""
     unknown = -1
     intact[:] = unknown
     intact[root] = 1

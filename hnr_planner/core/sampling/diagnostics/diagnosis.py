@@ -54,8 +54,8 @@ class Diagnosis:
         Number of cells, of up to 16 with equal numbers of all draws, that a chain never entered
         although it made enough draws.
     separated : (n_chains, n_chains) bool
-        Whether the draws of two chains can be told apart by their positions, so that the chains
-        keep to different regions, however finely interleaved.
+        Whether the draws of two chains can be distinguished by their positions, so that the
+        chains are in different regions, however finely interleaved.
     reasons : tuple of str
         Reasons why the chains have not converged; empty where none was found.
 

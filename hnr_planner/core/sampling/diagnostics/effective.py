@@ -58,7 +58,7 @@ def time_within(chains: Floats) -> float:
 
 
 def split(chains: Floats) -> Floats:
-    """Return the first halves, then the second halves, without the middle of an odd number."""
+    """Return all first halves, then all second halves: (2 n_chains, n_draws // 2)."""
     half = chains.shape[1] // 2
     return np.concatenate([chains[:, :half], chains[:, -half:]])
 

@@ -1,8 +1,9 @@
 """
-Holding times: how long chains stay on one point.
+Holding times: numbers of consecutive draws of a chain on one point.
 
-A walk repeats its point where the chord contains no other number (a zero chord), and where it
-rejects a move. Long holding times are the sign of a stuck chain in draws alone.
+All ``draws`` are (n_chains, n_draws, dim). A walk repeats its point where the chord contains no
+other number (a zero chord), and where it rejects a move. Long holding times are the sign of a
+stuck chain in draws alone.
 """
 
 from hnr_planner.core.checks import Floats
@@ -24,7 +25,7 @@ def longest_holding_time(draws: Floats) -> NDArray[np.int64]:
 
 
 def frozen(draws: Floats) -> NDArray[np.bool_]:
-    """Return which coordinates of each chain (n_chains, dim) never change."""
+    """Return which coordinates of each chain never change: (n_chains, dim) bool."""
     return (draws == draws[:, :1]).all(axis=1)
 
 

@@ -3,7 +3,7 @@ Pairs of chains that occupy different points of the set: a classifier two-sample
 
 The first half of every chain trains a nearest-neighbour classifier on the joint coordinates: it
 assigns a point to the chain of the nearest draw. The second half tests it. Chains of the same law
-cannot be told apart. Where draws of two chains are classified better than by chance, the chains
+cannot be distinguished. Where draws of two chains are classified better than by chance, the chains
 keep to different regions, even if these are so finely interleaved that no marginal differs.
 
 False alarms. Let C[i, j] count the test draws of chain i that are assigned to chain j. Given the
@@ -38,7 +38,7 @@ class Separation(NamedTuple):
     Attributes
     ----------
     separated : (n_chains, n_chains) bool
-        Whether the draws of two chains can be told apart; symmetric.
+        Whether the draws of two chains can be distinguished; symmetric.
     accuracy : (n_chains, n_chains)
         Fraction of the draws of both chains that are assigned to the right one of the two; nan
         where none is assigned to either.
@@ -116,7 +116,7 @@ def log_tail(counts: NDArray[np.int64]) -> Floats:
     """
     Bound the log probability (n_chains, n_chains) of as many right assignments by chance.
 
-    The tables of i, j and of j, i bound the same event; the smaller bound stands in both places.
+    The tables of i, j and of j, i bound the same event; both entries are the smaller bound.
     """
     right = np.diag(counts).astype(np.float64)[:, None]
     of_chain, to_chain = right + counts, right + counts.T

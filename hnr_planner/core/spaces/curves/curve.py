@@ -1,11 +1,11 @@
 """
-Curves that a robot follows, and where they leave a space.
+Curves that a robot follows, and their first exit from a space.
 
 Under constant controls a robot moves along a parabola or an arc. Each coordinate of such a curve
 is a function of one parameter for which everything that contact needs has a closed form: its
-value, where it turns, and where it reaches a value before it turns. So the first contact with a
-boundary is found as a root, never by small steps. A compiled space for which that is known
-registers a kernel for ``first_exit_on_curve`` in the module of its space.
+value, its turning points (where the derivative is 0), and where it reaches a value before the next
+one. So the first contact with a boundary is found as a root, never by small steps. A compiled
+space that supports it registers a kernel for ``first_exit_on_curve`` in the module of its space.
 """
 
 import math
@@ -16,7 +16,7 @@ from hnr_planner.core.kernels.dispatch import dispatched
 from hnr_planner.core.kernels.kernel import kernel
 from hnr_planner.core.spaces.primitives import CompiledSpace, contains
 
-#: A turning point of an arc nearer than this fraction of half a circle is the one just passed.
+#: Fraction of half a circle within which a turning point of an arc counts as the one just passed.
 SAME_TURN = 1e-9
 
 
@@ -30,7 +30,7 @@ def coordinate(curve: Any, i: int) -> Any:
 @dispatched
 @kernel
 def along(curve: Any, normal: Floats) -> Any:
-    """Return the coordinate along a unit vector ``normal`` (dim,), as a function as well."""
+    """Return the coordinate along a unit vector ``normal`` (dim,), a function of the parameter."""
     raise NotImplementedError
 
 
@@ -44,14 +44,14 @@ def at(f: Any, t: float) -> float:
 @dispatched
 @kernel
 def turn(f: Any, t: float) -> float:
-    """Return the first parameter > ``t`` at which a coordinate turns; inf for none."""
+    """Return the first turning point > ``t`` of a coordinate; inf for none."""
     raise NotImplementedError
 
 
 @dispatched
 @kernel
 def reach(f: Any, value: float, t: float) -> float:
-    """Return where a coordinate has ``value``, between ``t`` and its next turn; inf for none."""
+    """Return where a coordinate is ``value``, before its next turning point; inf for none."""
     raise NotImplementedError
 
 
@@ -62,10 +62,10 @@ def first_exit_on_curve(space: CompiledSpace, curve: Any, end: float) -> float:
     raise NotImplementedError
 
 
-def knows_curves(data: CompiledSpace) -> bool:
-    """Return whether ``first_exit_on_curve`` is known for a compiled space and all nested ones."""
+def supports_curves(data: CompiledSpace) -> bool:
+    """Return whether a compiled space and all nested ones support ``first_exit_on_curve``."""
     nested = [field for field in data if contains.knows(field)]
-    return first_exit_on_curve.knows(data) and all(map(knows_curves, nested))
+    return first_exit_on_curve.knows(data) and all(map(supports_curves, nested))
 
 
 class Parabola(NamedTuple):
@@ -77,7 +77,11 @@ class Parabola(NamedTuple):
 
 
 class Arc(NamedTuple):
-    """The arc from ``position`` (2,), by its length; ``curvature`` > 0 turns to the left."""
+    """
+    The arc from ``position`` (2,) at ``heading`` [rad], as a function of its length.
+
+    ``curvature`` is the inverse of its radius, above 0 to the left.
+    """
 
     position: Floats
     heading: float
@@ -103,14 +107,14 @@ class Winding(NamedTuple):
 @coordinate.register(Parabola)
 @kernel
 def _parabola_coordinate(curve, i):
-    """Return coordinate ``i`` of a parabola."""
+    """Return coordinate ``i`` of a parabola, as a quadratic function of its parameter."""
     return Quadratic(curve.position[i], curve.velocity[i], curve.acceleration[i])
 
 
 @coordinate.register(Arc)
 @kernel
 def _arc_coordinate(curve, i):
-    """Return coordinate ``i`` of an arc: y is x as seen from a quarter of a turn on."""
+    """Return coordinate ``i`` of an arc: y is x for a heading turned by a quarter circle."""
     return Winding(curve.position[i], curve.heading - i * (math.pi / 2.0), curve.curvature)
 
 
@@ -129,7 +133,7 @@ def _parabola_along(curve, normal):
 @along.register(Arc)
 @kernel
 def _arc_along(curve, normal):
-    """Count the heading of an arc from the direction of ``normal``."""
+    """Return the coordinate of an arc whose heading is measured from ``normal``."""
     start = normal[0] * curve.position[0] + normal[1] * curve.position[1]
     return Winding(start, curve.heading - math.atan2(normal[1], normal[0]), curve.curvature)
 
@@ -144,7 +148,7 @@ def _quadratic_at(f, t):
 @turn.register(Quadratic)
 @kernel
 def _quadratic_turn(f, t):
-    """Return the vertex of a quadratic where it lies after ``t``."""
+    """Return the parameter of the extremum of a quadratic if it lies after ``t``; else inf."""
     turn = -f.slope / f.change if f.change != 0.0 else math.inf
     return turn if turn > t else math.inf
 
@@ -152,7 +156,7 @@ def _quadratic_turn(f, t):
 @reach.register(Quadratic)
 @kernel
 def _quadratic_reach(f, value, t):
-    """Solve for the parameter from ``t`` on, in the form without cancellation."""
+    """Solve the quadratic equation for the first parameter from ``t`` on, without cancellation."""
     slope, away = f.slope + f.change * t, value - _quadratic_at(f, t)
     if away == 0.0:
         return t
@@ -165,7 +169,7 @@ def _quadratic_reach(f, value, t):
 @at.register(Winding)
 @kernel
 def _winding_at(f, s):
-    """Move along the chord: its length is that of the arc times sin(h) / h, its angle the mean."""
+    """Evaluate by the arc's chord: length ``s sin(h) / h`` at the mean angle, h half the turn."""
     half = f.curvature * s / 2.0
     shrink = math.sin(half) / half if half != 0.0 else 1.0
     return f.start + s * shrink * math.cos(f.angle + half)
@@ -174,7 +178,7 @@ def _winding_at(f, s):
 @turn.register(Winding)
 @kernel
 def _winding_turn(f, s):
-    """Return the next point of the arc at which the coordinate's slope is 0."""
+    """Return the next parameter after ``s`` at which the slope of an arc's coordinate is 0."""
     if f.curvature == 0.0:
         return math.inf
     turns = (f.angle + f.curvature * s) / math.pi - 0.5

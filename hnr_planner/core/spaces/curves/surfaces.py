@@ -1,10 +1,10 @@
 """
 First exit of a curve from a space bounded by planes and spheres, in any dimension.
 
-Whether a point is free changes only where the curve crosses one of those surfaces. So all these
-parameters are found, as roots, and sorted: between two of them the middle decides for all. A space
-composed of such spaces has the surfaces of all its members. A curve that touches a surface and
-stays on its side is not stopped by it.
+Whether a point is free changes only where the curve crosses one of those surfaces. So the
+crossings are computed as roots and sorted, and between two of them one point in the middle is
+tested. A space composed of such spaces has the surfaces of all its members. A curve that only
+touches a surface, without crossing it, is not stopped by it.
 
 A compiled space registers ``add_crossings``, ``max_gap_of`` where gaps close in it, and
 ``first_exit_between_surfaces`` for ``first_exit_on_curve``.
@@ -21,9 +21,9 @@ from hnr_planner.core.spaces.curves.polynomials import next_change
 from hnr_planner.core.spaces.primitives import CompiledSpace, contains
 import numpy as np
 
-#: Crossings for which there is memory at first.
-ROOM = 64
-#: Parts of a curve shorter than this fraction of its coordinates are rounding.
+#: Number of crossings that fit in the array at first.
+INITIAL_CAPACITY = 64
+#: Sections of a curve shorter than this fraction of its coordinates are rounding errors.
 ROUNDING = 1e-15
 
 
@@ -33,8 +33,8 @@ def add_crossings(space: CompiledSpace, curve: Any, end: float, crossings: Float
     """
     Write the parameters in [0, ``end``] at which the curve meets a surface of ``space``.
 
-    They go to ``crossings`` from index ``n`` on, as far as there is room. Returns ``n`` plus their
-    number.
+    They are written to ``crossings`` from index ``n`` on, as many as fit. Returns ``n`` plus their
+    number, also of those that do not fit.
     """
     raise NotImplementedError
 
@@ -42,14 +42,14 @@ def add_crossings(space: CompiledSpace, curve: Any, end: float, crossings: Float
 @dispatched
 @kernel
 def max_gap_of(space: CompiledSpace) -> float:
-    """Return the length of the longest gap between two members that a curve passes."""
+    """Return the length of the longest gap between two members that a curve can cross."""
     return 0.0
 
 
 @kernel
 def first_exit_between_surfaces(space, curve, end):
     """Return the first crossing after which the curve is not free; see ``first_exit_on_curve``."""
-    crossings = np.empty(ROOM)
+    crossings = np.empty(INITIAL_CAPACITY)
     n = add_crossings(space, curve, end, crossings, 0)
     if n > len(crossings):
         crossings = np.empty(n)
@@ -73,7 +73,7 @@ def first_exit_between_surfaces(space, curve, end):
 
 @kernel
 def _is_in_gap(curve, before, end, middle, max_gap):
-    """Return whether a piece of a curve from ``middle`` to ``end`` is half a gap at most."""
+    """Return whether the curve from ``middle`` to ``end`` is at most half of ``max_gap`` long."""
     squared, longest = 0.0, max_gap
     for i in range(len(end)):
         squared += (end[i] - middle[i]) ** 2
@@ -83,7 +83,7 @@ def _is_in_gap(curve, before, end, middle, max_gap):
 
 @kernel
 def add_level_crossings(f, level, end, crossings, n):
-    """Add the parameters in [0, ``end``] at which a coordinate ``f`` has the value ``level``."""
+    """Append the parameters in [0, ``end``] where ``f`` is ``level``; return their number."""
     t = 0.0
     while t < end:
         piece_end = min(end, turn(f, t))
@@ -101,14 +101,14 @@ def add_level_crossings(f, level, end, crossings, n):
 def add_sphere_crossings(
     curve: Any, centre: Floats, radius: float, end: float, crossings: Floats, n: int
 ) -> int:
-    """Add the parameters in [0, ``end``] at which a curve meets a sphere."""
+    """Append the parameters in [0, ``end``] where a curve meets a sphere; return their number."""
     raise NotImplementedError
 
 
 @add_sphere_crossings.register(Parabola)
 @kernel
 def _add_sphere_crossings_of_parabola(curve, centre, radius, end, crossings, n):
-    """Find the sign changes of |x + v t + a t^2 / 2 - c|^2 - r^2, of order four."""
+    """Append the sign changes of the quartic |x + v t + a t^2 / 2 - c|^2 - r^2."""
     c = np.zeros(5)
     c[0] = -radius * radius
     for i in range(len(centre)):
@@ -131,7 +131,7 @@ def _add_sphere_crossings_of_parabola(curve, centre, radius, end, crossings, n):
 @kernel
 def _add_sphere_crossings_of_arc(curve, centre, radius, end, crossings, n):
     """
-    Intersect the arc with the line on which its circle meets the sphere.
+    Append the intersections of the arc with the line on which its circle meets the sphere.
 
     With m the centre of that circle and R its radius, |x - c|^2 = R^2 + |m - c|^2 + 2 (x - m)
     (m - c): constant along lines across m - c.
@@ -159,5 +159,5 @@ def _add_sphere_crossings_of_arc(curve, centre, radius, end, crossings, n):
 
 @kernel
 def own_max_gap(space):
-    """Return the ``max_gap`` of compiled convex pieces: their kernel for ``max_gap_of``."""
+    """Return the field ``max_gap`` of a compiled space: its kernel for ``max_gap_of``."""
     return space.max_gap

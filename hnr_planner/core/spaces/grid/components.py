@@ -1,4 +1,4 @@
-"""Components of a grid: the nearest point of a free one, and a point in each blocked one."""
+"""Components of the free and of the blocked cells of a grid."""
 
 import math
 
@@ -12,8 +12,8 @@ def island_points(blocked_with_rim: Bools) -> NDArray[np.float64]:
     """
     Return the centre (k, 2) of one cell of each island, kernel frame.
 
-    An island is a component of blocked cells, connected over edges or corners since nothing passes
-    between such cells, that does not touch the rim.
+    An island is a component of blocked cells that does not touch the rim. Cells that share an edge
+    or only a corner are connected, since no path passes between them.
     """
     import cv2  # only here, as in fields.py
 
@@ -27,12 +27,19 @@ def island_points(blocked_with_rim: Bools) -> NDArray[np.float64]:
     return np.stack([columns, rows], axis=1)[inside] + 0.5
 
 
+def largest_component(labels: NDArray[np.int32]) -> Bools:
+    """Return the cells (rows, cols) of the largest component; none where no cell is free."""
+    sizes = np.bincount(labels.ravel())
+    sizes[0] = 0
+    return (labels == sizes.argmax()) & (labels > 0)
+
+
 @kernel
 def nearest_in_component(labels, component, target, margin):
     """
     Return the point (2,) of a component nearest to ``target`` (2,), and its distance.
 
-    Kernel frame. Free space is open: each coordinate is kept ``margin`` inside of its cell.
+    Kernel frame [cells]. Free space is open: each coordinate is kept ``margin`` inside its cell.
     """
     rows, columns = labels.shape
     nearest, least = np.empty(2), math.inf

@@ -2,7 +2,7 @@
 First exit of a curve from a grid: exact cell traversal along parabolas and arcs.
 
 Between two turning points both coordinates are monotone, so that the curve crosses grid lines in
-order, as a ray does: the traversal is the ray's, with roots in place of quotients.
+order, as a ray does: the traversal is that of a ray, with roots instead of quotients.
 """
 
 import math
@@ -21,7 +21,7 @@ from hnr_planner.core.spaces.grid.traversal import (
 
 @kernel
 def first_exit_from_grid(grid, curve, end):
-    """Return what ``first_exit_on_curve`` does, for a compiled grid."""
+    """Return the first parameter in [0, ``end``] at which a curve is not free; inf for none."""
     free_distance = grid.free_distance
     x, y = coordinate(curve, 0), coordinate(curve, 1)
     if not is_free(free_distance, at(x, 0.0), at(y, 0.0)):
@@ -38,7 +38,7 @@ def first_exit_from_grid(grid, curve, end):
 
 @kernel
 def _first_exit_of_piece(free_distance, x, y, t, end):
-    """Follow a piece without a turning point from ``t`` to ``end``; inf when it stays free."""
+    """Follow a curve without turning points from ``t`` to ``end``; return its exit, or inf."""
     x_at_t, y_at_t = at(x, t), at(y, t)
     column, column_step, beside_column = first_cell(x_at_t, at(x, end) - x_at_t)
     row, row_step, beside_row = first_cell(y_at_t, at(y, end) - y_at_t)

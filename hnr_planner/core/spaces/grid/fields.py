@@ -1,14 +1,14 @@
 """
 Fields over the cells of a grid, by one pass of OpenCV each: inflation, distance, components.
 
-OpenCV is imported where it is called: it takes a tenth of a second that other spaces do not need.
+OpenCV is imported in the functions: it takes a tenth of a second, which other spaces do not need.
 """
 
 from hnr_planner.core.spaces.grid.cells import Bools
 import numpy as np
 from numpy.typing import NDArray
 
-#: Largest distance: distances are kept in one byte [cells].
+#: Largest distance, since distances are stored in one byte [cells].
 FARTHEST = 255
 
 
@@ -16,8 +16,8 @@ def inflate(occupied: Bools, radius: float) -> Bools:
     """
     Return the cells whose centre is within ``radius`` [cells] of the centre of an occupied one.
 
-    Squared offsets between cells are whole numbers, so the limit on the distance is set between
-    the roots of two of them, where the rounding of the transform does not matter.
+    Squared distances between cells are integers, so the limit on the distance lies between the
+    roots of two integers, where the rounding of the transform does not matter.
     """
     import cv2
 
@@ -32,7 +32,7 @@ def inflate(occupied: Bools, radius: float) -> Bools:
 
 def free_distance(blocked: Bools, *, closed_rim: bool = True) -> NDArray[np.uint8]:
     """
-    Return the distance in king's moves from each cell to the nearest blocked one, at most 255.
+    Return the Chebyshev distance [cells] from each cell to the nearest blocked one, at most 255.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Flood fill of a grid: a path wherever there is one, through the centres of cells."""
+"""Flood fill of a grid: a path through the centres of cells, wherever there is one."""
 
 import math
 
@@ -12,7 +12,7 @@ STEPS = ((0, 1), (1, 0), (0, -1), (-1, 0))
 
 @kernel
 def flood_path_in_grid(grid, start, goal, goal_radius, margin):
-    """Flood the free cells from the start's, breadth first, until one reaches the goal."""
+    """Return a path (m, 2) found by breadth-first search over free cells; (0, 2) for none."""
     grid = borrowed(grid)
     free_distance = grid.free_distance
     rows, columns = free_distance.shape
@@ -51,7 +51,7 @@ def _reaches(row, column, goal, goal_radius, margin, nearest):
 
 @kernel
 def _path_through(reached_by, start, row, column, end):
-    """Return the path (m, 2) from the start by the cells that led to one, and on to ``end``."""
+    """Return the path (m, 2) from the start to the cell [row, column], and on to ``end``."""
     path, n, before = np.empty((64, 2)), 1, 0
     path[0] = end
     while True:

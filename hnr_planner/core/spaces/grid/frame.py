@@ -18,7 +18,7 @@ FINEST = 1e-6
 @dataclass(frozen=True)
 class GridFrame:
     """
-    The frame of a grid: origin and yaw are applied here and nowhere else.
+    The frame of a grid: the conversion between metres in the map frame and cells.
 
     One unit of the kernel frame is one cell. The frame starts one cell before the grid, at the
     corner of a rim of blocked cells, so that every ray ends inside the arrays.
@@ -47,7 +47,8 @@ class GridFrame:
         """
         Build a frame from a caller's numbers, or raise SpaceError that names the wrong one.
 
-        A resolution that came from a single-precision message is taken as the decimal it means.
+        A resolution of single precision, as in a message, is replaced by its decimal
+        (``decimal``).
         """
         resolution = decimal(check_real('resolution', resolution, SpaceError))
         if not 0.0 < resolution < math.inf:
@@ -113,11 +114,11 @@ class GridFrame:
 
 def decimal(number: float) -> float:
     """
-    Return the decimal of six digits that a number of single precision stands for.
+    Return the decimal of six digits whose single-precision value is ``number``, if any.
 
     A message carries the resolution .05 in single precision, as .05000000074505806, and ratios of
-    such lengths would miss whole numbers. Every decimal of six digits can be told from its value
-    in single precision; all other numbers are returned unchanged.
+    such lengths would miss whole numbers. A decimal of six digits is determined by its value in
+    single precision; all other numbers are returned unchanged.
     """
     short = float(f'{number:.6g}')
     with np.errstate(over='ignore', under='ignore'):

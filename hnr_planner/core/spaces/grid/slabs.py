@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 Ints = NDArray[np.int32]
 #: Ends of a portal.
 LEFT, RIGHT = 0, 1
-#: A point on a grid line counts as this much above it [cells].
+#: A point on a grid line is moved up by this [cells].
 OFF_LINE = 1e-9
 #: The exit of a slab that is no dead end.
 THROUGH = -1
@@ -46,8 +46,8 @@ class Slabs(NamedTuple):
     rows : (n_rows + 1,) int32
         First run of each row.
     exits : (n_slabs,) int32
-        The slab that a dead end leads back to; ``THROUGH`` for the slabs of no dead end, and the
-        slab itself where a tree of slabs ends in it alone.
+        The next slab on the path out of a dead end; ``THROUGH`` for slabs of no dead end, and the
+        slab itself where a tree of slabs has no other exit.
 
     """
 
@@ -173,7 +173,7 @@ def _find_dead_ends(portals, above, below):
     """
     Return the exit (n_slabs,) of each slab.
 
-    A slab with one neighbour is a dead end, and so is one with one neighbour that is none.
+    A slab with one neighbour is a dead end, and so is one with one neighbour that is no dead end.
     """
     n_slabs = len(above)
     exits, degrees = np.full(n_slabs, THROUGH, dtype=np.int32), np.empty(n_slabs, dtype=np.int32)
@@ -203,7 +203,7 @@ def _find_dead_ends(portals, above, below):
 
 @kernel
 def slab_at(slabs, x, y):
-    """Return the slab that holds a free point; one on a grid line is looked up just above it."""
+    """Return the slab that holds a free point; for one on a grid line the slab above it."""
     row = int(np.floor(y))
     low, high = slabs.rows[row], slabs.rows[row + 1]
     while high - low > 1:

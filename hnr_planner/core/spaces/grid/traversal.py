@@ -2,14 +2,14 @@
 The chord on a grid: exact cell traversal, with a distance field to skip empty space.
 
 Kernel frame: one unit is one cell, cell (row, column) is the square [column, column + 1] x
-[row, row + 1], x before y. ``free_distance[row, column]`` is the distance in king's moves to the
+[row, row + 1], x before y. ``free_distance[row, column]`` is the Chebyshev distance [cells] to the
 nearest blocked cell: 0 for blocked cells, and with ``d`` all cells within ``d - 1`` are free. The
 rim of the array is blocked, so a ray always ends.
 
 The line ``x + s u`` meets the grid line ``X`` at ``s = (X - x) / u``, whichever cells were visited
 before. A skip ends at a point that traversal cell by cell passes too, so both stop at the same
-number to the last bit. Blocked cells are closed: a ray through a corner needs all four cells free,
-and one along a grid line the cells on both sides.
+number to the last bit. Blocked cells are closed: a ray through a corner needs all four cells to be
+free, and one along a grid line the cells on both sides.
 """
 
 import math
@@ -27,7 +27,7 @@ from hnr_planner.core.spaces.primitives import (
 import numpy as np
 from numpy.typing import NDArray
 
-#: Least number of free cells around from which skipping pays (measured on maps of buildings).
+#: Least distance to a blocked cell [cells] for which a skip is faster (measured on building maps).
 LEAST_REACH = 2
 #: Distance from the last free cell's side at which a skip ends, more than rounding [cells].
 SKIN = 1e-6
@@ -40,7 +40,7 @@ class GridData(NamedTuple):
     Attributes
     ----------
     free_distance : (rows, columns) uint8
-        Distance in king's moves to the nearest blocked cell; 0 on the rim.
+        Chebyshev distance [cells] to the nearest blocked cell; 0 on the rim.
     labels : (rows, columns) int32
         Component that each free cell belongs to, from 1; 0 for blocked cells.
 

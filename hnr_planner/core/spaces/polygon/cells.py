@@ -14,12 +14,12 @@ CELLS_FOR_AN_EDGE = 2.0
 
 def edges_in_cells(edges: Floats, numbers: NDArray[np.int32], rounding: float) -> PolygonData:
     """
-    Return compiled polygons.
+    Return compiled polygons: sort edges into a grid of cells.
 
     Parameters
     ----------
     edges : (m, 4)
-        From (x, y) to (x, y), with the inside on the left.
+        Ends (x, y, x, y) of each edge, with the inside on the left.
     numbers : (m,) int32
         Number of the polygon of each edge, from 1.
     rounding : float
@@ -45,7 +45,7 @@ def edges_in_cells(edges: Floats, numbers: NDArray[np.int32], rounding: float) -
 @kernel
 def _enlist(edges, lower, side, shape, filled, near):
     """
-    Append each edge to the lists of the cells that it comes near, or only count.
+    Append each edge to the lists of the cells near it, or only count.
 
     ``filled`` (cells,) is the index in ``near`` (entries,) at which each list ends; it is advanced
     by the appended edges. An empty ``near`` only counts them.

@@ -1,14 +1,14 @@
 """
 Polygons as a compiled space: edges in a grid of cells, each of which lists the edges near it.
 
-A ray goes from cell to cell and tests only the edges there. The polygon that holds a point follows
-from its cell alone: the polygon at the corner of the cell is known, and on the way there, to the
-right and then up, every edge that is crossed leads out of one polygon or into one. Both legs run
-along an axis, so that comparing coordinates decides whether an edge is crossed at all: no rounding
-enters.
+A ray is followed from cell to cell and tested against the edges there. The polygon that contains a
+point follows from its cell alone: the polygon at the upper right corner of the cell is stored, and
+from the point to that corner, to the right and then up, every edge crossed is the exit from a
+polygon or the entry into one. Both segments are parallel to an axis, so that comparisons of
+coordinates decide whether an edge is crossed, without rounding.
 
-Nothing passes between two edges that share a corner: for both the corner is on the same side of a
-ray, by the same numbers. A point or a ray that is closer to an edge than rounding touches it.
+No ray passes between two edges that share a corner: for both the side of the corner is computed
+from the same numbers. A point or a ray that is closer to an edge than rounding touches it.
 """
 
 import math
@@ -26,7 +26,7 @@ from hnr_planner.core.spaces.primitives import (
 import numpy as np
 from numpy.typing import NDArray
 
-#: Distance around a cell from which an edge counts as in it, more than rounding [cells].
+#: Distance [cells] up to which an edge counts as near a cell; more than rounding.
 AROUND = 1e-6
 
 
@@ -37,7 +37,7 @@ class PolygonData(NamedTuple):
     Attributes
     ----------
     edges : (m, 4)
-        From (x, y) to (x, y), with the inside on the left.
+        Ends (x, y, x, y) of each edge, with the inside on the left.
     numbers : (m,) int32
         Number of the polygon of each edge, from 1.
     rounding : float
@@ -73,7 +73,7 @@ def line(lower, side, k):
 
 @kernel
 def is_right(edges, k, x, y):
-    """Return whether edge ``k``, which crosses the height of a point, passes on its right."""
+    """Return whether edge ``k``, which crosses the horizontal line at (x, y), is right of it."""
     ax, ay, bx, by = edges[k, 0], edges[k, 1], edges[k, 2], edges[k, 3]
     if x < min(ax, bx):
         return True
@@ -84,7 +84,7 @@ def is_right(edges, k, x, y):
 
 @kernel
 def _is_above(edges, k, x, y):
-    """Return whether edge ``k``, which crosses the vertical through a point, passes above it."""
+    """Return whether edge ``k``, which crosses the vertical line at (x, y), is above it."""
     ax, ay, bx, by = edges[k, 0], edges[k, 1], edges[k, 2], edges[k, 3]
     if y < min(ay, by):
         return True
@@ -95,7 +95,7 @@ def _is_above(edges, k, x, y):
 
 @kernel
 def _locate(space, x, y):
-    """Return the number of the polygon that holds a point; 0 outside of all, -1 on an edge."""
+    """Return the number of the polygon that contains a point; 0 outside of all, -1 on an edge."""
     rows, columns = space.levels.shape
     across, up = (x - space.lower[0]) / space.side, (y - space.lower[1]) / space.side
     if not (-AROUND < across < columns and -AROUND < up < rows):
@@ -140,7 +140,7 @@ def _is_on(space, k, x, y):
 @contains.register(PolygonData)
 @kernel
 def _contains(space, x):
-    """Return whether a polygon holds ``x`` (2,) in its inside."""
+    """Return whether ``x`` (2,) is inside a polygon."""
     return _locate(space, x[0], x[1]) > 0
 
 
@@ -183,8 +183,8 @@ def _first_edge(space, x, y, ux, uy, horizon):
     """
     Return the first parameter at which a ray from a point off the edges meets an edge.
 
-    It is inf when the ray never does, and any value above ``horizon`` once the ray is known to
-    meet none up to there.
+    It is inf when the ray meets none, and may be any value above ``horizon`` when it meets none up
+    to there.
     """
     rows, columns = space.levels.shape
     # Point and direction in units of a cell.
@@ -262,7 +262,7 @@ def _meet(edge, tolerance, x, y, ux, uy):
 
 @kernel
 def _if_ahead(s):
-    """Return a parameter above 0 as it is, and inf for others."""
+    """Return a parameter above 0 unchanged, and inf for others."""
     return s if s > 0.0 else math.inf
 
 

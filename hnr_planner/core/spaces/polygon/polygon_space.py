@@ -37,7 +37,7 @@ class PolygonSpace(Space):
     Parameters
     ----------
     polygon : shapely.Polygon or shapely.MultiPolygon
-        Valid, with an inside. Coordinates z are ignored.
+        Valid and not empty. Coordinates z are ignored.
 
     Raises
     ------
@@ -80,7 +80,7 @@ class PolygonSpace(Space):
 
     @property
     def margin(self) -> float:
-        """Distance from a chord's end at which one stops, never below what coordinates resolve."""
+        """Distance before a chord's end at which a motion stops; above rounding errors."""
         return max(super().margin, 8.0 * self.data.rounding)
 
     @property
@@ -103,7 +103,7 @@ class PolygonSpace(Space):
         return bool(self.polygon.covers(box(*lower, *upper)))
 
     def why_not_free(self, point: ArrayLike) -> str:
-        """Return in words why ``point`` (2,) is not free."""
+        """Return the reason why ``point`` (2,) is not free."""
         from shapely import Point, Polygon
 
         where = Point(check_point('point', point, 2))
@@ -191,7 +191,7 @@ first_exit_on_curve.register(PolygonData)(first_exit_between_surfaces)
 @add_crossings.register(PolygonData)
 @kernel
 def _add_crossings(polygon, curve, end, crossings, n):
-    """Add where a curve meets the whole line of each edge: further crossings do no harm."""
+    """Append the parameters where a curve meets the lines of edges; return their number."""
     normal = np.empty(2)
     for k in range(len(polygon.edges)):
         ax, ay, bx, by = polygon.edges[k]

@@ -2,13 +2,11 @@
 The cache of a chain in a polytope: the distances from the chain's point to the planes.
 
 A line along ``u`` approaches the planes at the rates ``normals u``; a move by ``s`` subtracts
-``s`` times the rates from the distances, and nothing has to be computed from the point. Along an
-axis the rates are one column of the normals, of which a sparse polytope reads the nonzero numbers
-only.
+``s`` times the rates from the distances, without a product with the point. Along an axis the rates
+are one column of the normals, of which a sparse polytope reads the nonzero numbers only.
 
-Rounding lets the distances drift, so they are computed anew every ``REFRESH`` steps, and a move to
-less than ``doubt`` from a plane is checked from the point itself: ``contains`` holds for every
-point of a chain.
+Rounding lets the distances drift, so they are recomputed every ``REFRESH`` steps, and a move to
+less than ``doubt`` from a plane is checked from the point itself: every point of a chain is free.
 """
 
 import math
@@ -132,7 +130,7 @@ def _move_along(polytope, cache, u, axis, s):
 
 @kernel
 def _move_and_refresh(polytope, cache, u, s):
-    """Move if ``contains`` holds for the end, and compute the distances from the point."""
+    """Move if the end is free, recompute the distances; return whether the chain moved."""
     for i in range(len(u)):
         cache.y[i] = cache.x[i] + s * u[i]
     is_free = move_if_free(polytope, cache)

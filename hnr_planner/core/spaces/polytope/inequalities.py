@@ -1,4 +1,4 @@
-"""Inequalities of a polytope from a caller: checked, and without those that always hold."""
+"""Validation of a polytope's inequalities, which drops those that every point satisfies."""
 
 from typing import Any
 
@@ -22,7 +22,7 @@ def check_inequalities(a: Any, b: Any) -> tuple[Floats, Floats, NDArray[np.intp]
     Returns
     -------
     normals : (k, dim)
-        Rows of ``a`` over their lengths. Rows that every point holds are left out.
+        Rows of ``a`` over their lengths. Rows that every point satisfies are left out.
     offsets : (k,)
         Right-hand sides over the same lengths.
     rows : (k,)
@@ -31,7 +31,7 @@ def check_inequalities(a: Any, b: Any) -> tuple[Floats, Floats, NDArray[np.intp]
     Raises
     ------
     SpaceError
-        When the numbers describe no inequalities, or one that no point holds.
+        When the numbers describe no inequalities, or one that no point satisfies.
 
     """
     offsets = check_numbers('b', b, SpaceError)
@@ -59,7 +59,7 @@ def check_inequalities(a: Any, b: Any) -> tuple[Floats, Floats, NDArray[np.intp]
 
 
 def _lengths(normals: Floats) -> Floats:
-    """Return the lengths (m,) of rows of any size, which their squares need not have."""
+    """Return the lengths (m,) of rows, without overflow or underflow of their squares."""
     largest = np.abs(normals).max(axis=1)
     lengths = np.linalg.norm(normals, axis=1)
     extreme = (largest > 1e150) | ((largest < 1e-150) & (largest > 0.0))

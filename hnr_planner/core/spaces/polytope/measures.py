@@ -1,7 +1,7 @@
 """
-Measures of a polytope: the largest ball inside, how far it reaches, and its bounds.
+Measures of a polytope: the largest ball inside, its extent, and its bounds.
 
-The largest ball and the bounds are linear programs. How far the polytope reaches follows from its
+The largest ball and the bounds are linear programs. The extent of the polytope follows from its
 *analytic centre*, the point with the largest product of distances to the planes: with H the
 Hessian of the logarithmic barrier there and m planes, the ellipsoid ``(x - c) H (x - c) < 1`` lies
 inside, and the one m times as large holds all points (Boyd and Vandenberghe, Convex Optimization,
@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 #: Factor by which the sizes of coordinates may differ before they are scaled.
 UNEVEN = 1e3
-#: Rounds in which rows and columns are scaled in turn: the sizes need not be exact.
+#: Rounds in which rows and columns are scaled alternately; the sizes need not be exact.
 SCALINGS = 20
 #: Radius, in scaled coordinates, up to which a ball is the error of a linear program.
 FLAT = 1e-9
@@ -117,15 +117,15 @@ def _why_no_ball(found: Any, normals: Floats, rows: NDArray[np.intp]) -> SpaceEr
 
 
 def _listed(rows: NDArray[np.intp]) -> str:
-    """Return the first of some row numbers in words."""
+    """Format row numbers for a message: at most ``LISTED`` of them."""
     more = '' if len(rows) <= LISTED else f' and {len(rows) - LISTED} more'
     return ', '.join(map(str, rows[:LISTED])) + more
 
 
 def why_no_reach(normals: Floats) -> SpaceError:
-    """Return the error of a polytope without analytic centre: that it is unbounded, if it is."""
+    """Return the error for a polytope without analytic centre, with a direction if unbounded."""
     dim = normals.shape[1]
-    # A direction along which all slacks grow or stay the same, and some grow.
+    # A direction along which no slack decreases, and some increase.
     found = _minimum(normals.sum(axis=0), normals, np.zeros(len(normals)), sides=(-1.0, 1.0))
     is_recession = found.status == 0 and found.fun < -FLAT
     if is_recession or np.linalg.matrix_rank(normals) < dim:
@@ -138,7 +138,7 @@ def why_no_reach(normals: Floats) -> SpaceError:
 
 def reach(normals: Floats, offsets: Floats, start: Floats) -> Reach:
     """
-    Return how far a polytope reaches, by Newton's method from a point ``start`` (dim,) inside.
+    Return the extent of a polytope, by Newton's method from a point ``start`` (dim,) inside.
 
     Raises
     ------
@@ -195,7 +195,7 @@ def bounds(normals: Floats, offsets: Floats, sizes: Floats) -> tuple[Floats, Flo
 
 
 def _sizes_to_try(normals: Floats, offsets: Floats) -> list[Floats]:
-    """Return sizes (dim,) of coordinates to try in turn: ones first, unless they are uneven."""
+    """Return the sizes (dim,) of coordinates to try, in order: ones first, unless uneven."""
     scaled = _sizes(np.column_stack([normals, offsets]))
     scaled = scaled[:-1] / scaled[-1]
     even = _sizes(normals)
@@ -205,7 +205,7 @@ def _sizes_to_try(normals: Floats, offsets: Floats) -> list[Floats]:
 
 
 def _sizes(matrix: Floats) -> Floats:
-    """Return factors (columns,) by which, with some of rows, nonzero numbers come to about 1."""
+    """Return factors (columns,) that, with some of rows, scale nonzero numbers to about 1."""
     is_nonzero = matrix != 0.0
     logs = np.log(np.abs(matrix), where=is_nonzero, out=np.zeros_like(matrix))
     n_in_rows = np.maximum(is_nonzero.sum(axis=1), 1)

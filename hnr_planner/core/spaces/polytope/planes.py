@@ -1,7 +1,7 @@
 """
-The planes of a polytope, compiled: as the primitives read them, and as walks do.
+The compiled planes of a polytope, in the layouts for the primitives and for walks.
 
-Walks have kernels of their own, in ``chain_cache``.
+The kernels for walks are in ``chain_cache``.
 """
 
 import math
@@ -69,7 +69,7 @@ class PolytopeData(NamedTuple):
     layout : Layout
         The normals as walks read them.
     doubt : float
-        Largest error of a distance to a plane that walks keep.
+        Largest error of a distance to a plane that walks update.
 
     """
 
@@ -80,7 +80,7 @@ class PolytopeData(NamedTuple):
 
 
 def layout_of(matrix: Floats) -> Layout:
-    """Return a matrix (m, dim) in the layout that is read faster."""
+    """Return a matrix (m, dim) in the dense or the sparse layout, whichever is read faster."""
     m, dim = matrix.shape
     if m >= LONG and np.count_nonzero(matrix) * SPARSE >= matrix.size:
         none, empty = np.empty(0, np.uint64), np.empty(0)
@@ -110,14 +110,14 @@ first_exit_on_curve.register(PolytopeData)(first_exit_between_surfaces)
 @contains.register(PolytopeData)
 @kernel
 def _contains(polytope, x):
-    """Return whether ``x`` is strictly inside of every plane."""
+    """Return whether ``x`` (dim,) is strictly inside every plane."""
     return _holds(polytope, x, False)
 
 
 @touches.register(PolytopeData)
 @kernel
 def _touches(polytope, x):
-    """Return whether ``x`` is inside of every plane or on it."""
+    """Return whether ``x`` (dim,) is inside every plane or on it."""
     return _holds(polytope, x, True)
 
 
@@ -149,7 +149,7 @@ def _holds(polytope, x, closed):
 
 @kernel
 def _span(polytope, x, u, closed):
-    """Return the interval of the line ``x + s u`` inside of every plane; (inf, -inf) for none."""
+    """Return the interval of the line ``x + s u`` inside every plane; (inf, -inf) for none."""
     first, last = -math.inf, math.inf
     for k in range(len(polytope.offsets)):
         slack, rate = _slack(polytope, k, x), _rate(polytope, k, u)
@@ -182,7 +182,7 @@ def _rate(polytope, k, u):
 @add_crossings.register(PolytopeData)
 @kernel
 def _add_crossings(polytope, curve, end, crossings, n):
-    """Add where a curve meets the planes."""
+    """Append the parameters where a curve meets the planes; return their number."""
     for k in range(len(polytope.offsets)):
         f = along(curve, polytope.normals[k])
         n = add_level_crossings(f, polytope.offsets[k], end, crossings, n)

@@ -1,4 +1,4 @@
-"""A polytope: the points that hold finitely many linear inequalities."""
+"""A polytope: the points that satisfy finitely many linear inequalities."""
 
 from functools import cached_property
 from typing import Any
@@ -22,8 +22,8 @@ class PolytopeSpace(Space):
     """
     The points x with ``a x < b`` in every row.
 
-    ``bounds``, and what needs them, are computed when first used: they take 2 dim linear programs.
-    Walks do not use them.
+    ``bounds`` are computed when first used: they take 2 dim linear programs. Walks do not use
+    them.
 
     Parameters
     ----------
@@ -36,7 +36,7 @@ class PolytopeSpace(Space):
     Raises
     ------
     SpaceError
-        When the inequalities leave no point, none with room around it, or an unbounded set.
+        When the polytope is empty, has no interior, or is unbounded.
 
     Attributes
     ----------
@@ -81,28 +81,28 @@ class PolytopeSpace(Space):
 
     @property
     def bounds(self) -> tuple[Floats, Floats]:
-        """Lower and upper corner (dim,)."""
+        """Lower and upper corner (dim,), caller's frame."""
         lower, upper = self.kernel_bounds
         return self.from_kernel(lower), self.from_kernel(upper)
 
     @property
     def zero_length(self) -> float:
-        """Length up to which a chord counts as zero: by the ball inside, without the bounds."""
+        """Length up to which a chord counts as zero, as a fraction of the ball inside."""
         return MARGIN * self.inner_radius
 
     @property
     def typical_clearance(self) -> float:
-        """Mean distance to the boundary in a ball as large as the largest inside."""
+        """Mean distance to the boundary in the largest ball inside."""
         return self.inner_radius / (self.dim + 1)
 
     def covers_box(self, lower: Floats, upper: Floats) -> bool:
-        """Return whether every inequality holds at the corner where it is nearest to failing."""
+        """Return whether the closed polytope contains the box between two corners (dim,)."""
         normals, offsets = self.data.normals, self.data.offsets
         worst = np.where(normals > 0.0, self.to_kernel(upper), self.to_kernel(lower))
         return bool(((normals * worst).sum(axis=1) <= offsets).all())
 
     def why_not_free(self, point: ArrayLike) -> str:
-        """Return in words why ``point`` (dim,) is not free."""
+        """Return the reason why ``point`` (dim,) is not free."""
         x = self.to_kernel(check_point('point', point, self.dim))
         excess = self.data.normals @ x - self.data.offsets
         k = int(np.argmax(excess))
