@@ -19,8 +19,8 @@ _NAMES_OF_MODULES = {
     'planning.plan': ('plan',),
     'planning.planners.hit_and_run': ('HitAndRun',),
     'planning.planners.hit_and_run_connect': ('HitAndRunConnect',),
-    'planning.planners.rrt': ('RRT',),
     'planning.planners.polyanya': ('Polyanya',),
+    'planning.planners.rrt': ('RRT',),
     'planning.planners.rrt_connect': ('RRTConnect',),
     'planning.postprocessing.simplify': ('simplify',),
     'planning.registry': ('ALGORITHMS',),
@@ -57,7 +57,7 @@ _NAMES_OF_MODULES = {
     'trajectories.plan_trajectory': ('plan_trajectory',),
     'trajectories.registry': ('KINODYNAMIC_ALGORITHMS', 'KINODYNAMIC_PLANNERS'),
     'trajectories.result': ('TrajectoryResult',),
-    'warming': ('warm_up',),
+    'warming': ('compile_all', 'compile_in_background', 'warm_up'),
 }
 _MODULE_OF = {name: module for module, names in _NAMES_OF_MODULES.items() for name in names}
 

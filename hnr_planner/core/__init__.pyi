@@ -50,9 +50,12 @@ from hnr_planner.core.spaces import UnionSpace as UnionSpace
 from hnr_planner.core.systems import Car as Car
 from hnr_planner.core.systems import DoubleIntegrator as DoubleIntegrator
 from hnr_planner.core.systems import System as System
+from hnr_planner.core.systems import join_trajectories as join_trajectories
 from hnr_planner.core.systems import Trajectory as Trajectory
 from hnr_planner.core.trajectories.plan_trajectory import plan_trajectory as plan_trajectory
 from hnr_planner.core.trajectories.registry import KINODYNAMIC_ALGORITHMS as KINODYNAMIC_ALGORITHMS
 from hnr_planner.core.trajectories.registry import KINODYNAMIC_PLANNERS as KINODYNAMIC_PLANNERS
 from hnr_planner.core.trajectories.result import TrajectoryResult as TrajectoryResult
+from hnr_planner.core.warming import compile_all as compile_all
+from hnr_planner.core.warming import compile_in_background as compile_in_background
 from hnr_planner.core.warming import warm_up as warm_up
