@@ -28,7 +28,7 @@ SIMPLIFY = '+simplify'
 
 
 class GridTraversal(base.MotionValidator):
-    """Exact check of motions."""
+    """Motion validator that traverses the cells of a grid exactly."""
 
     def __init__(self, si: base.SpaceInformation, grid: GridData) -> None:
         super().__init__(si)
