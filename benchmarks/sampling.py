@@ -61,7 +61,7 @@ ESS_THIN = {HIT_AND_RUN: (100, 400), COORDINATE: (50, 100, 200)}
 BILLIARD, BILLIARD_THIN = 'BilliardWalkProposal', (1, 4)
 #: Target: time of the import over that of its two largest libraries.
 IMPORT_AT_MOST = 1.5
-IMPORTS, LIBRARIES = 'import hnr_planner.core', 'import numba, scipy'
+IMPORTS, LIBRARIES = 'from hnr_planner import GridSpace, plan, sample', 'import numba, scipy'
 COUNT_COMPILATIONS = f"""
 from numba.core import event
 with event.install_recorder('numba:compile') as recorder:

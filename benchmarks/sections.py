@@ -91,7 +91,7 @@ def shortfalls(fails: dict[str, bool]) -> str:
 
 
 def on_all(what: str, to_reach: str, falls_short: dict[str, str], n_problems: int) -> Verdict:
-    """Return the verdict on a target on all problems; ``falls_short`` has the shortfall by name."""
+    """Return the verdict on a target on all problems, with the ``falls_short`` of each by name."""
     held = f'on {n_problems - len(falls_short)} of {n_problems} problems'
     but = ', '.join(f'{name} {words}' for name, words in falls_short.items())
     return Verdict(what, to_reach, f'{held}; not on: {but}' if but else held, not falls_short)

@@ -62,7 +62,7 @@ def summary(entry: Entry, standing: Standing) -> Summary:
 
 
 def quantile(values: Floats, part: float) -> float:
-    """Return the least value that a fraction ``part`` of the values do not exceed; nan for none."""
+    """Return the least value that a fraction ``part`` of values do not exceed; nan for none."""
     if len(values) == 0:
         return np.nan
     return float(np.quantile(values, part, method='inverted_cdf'))

@@ -49,8 +49,8 @@ from hnr_planner.core.spaces import Space as Space
 from hnr_planner.core.spaces import UnionSpace as UnionSpace
 from hnr_planner.core.systems import Car as Car
 from hnr_planner.core.systems import DoubleIntegrator as DoubleIntegrator
-from hnr_planner.core.systems import System as System
 from hnr_planner.core.systems import join_trajectories as join_trajectories
+from hnr_planner.core.systems import System as System
 from hnr_planner.core.systems import Trajectory as Trajectory
 from hnr_planner.core.trajectories.plan_trajectory import plan_trajectory as plan_trajectory
 from hnr_planner.core.trajectories.registry import KINODYNAMIC_ALGORITHMS as KINODYNAMIC_ALGORITHMS

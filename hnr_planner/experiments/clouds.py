@@ -159,7 +159,7 @@ def _arrivals(way: NDArray) -> NDArray[np.float64]:
 
 
 def _way(corridor: Straightened, points: NDArray) -> NDArray[np.float64]:
-    """Return the fraction of the way (k,) of points; a point on a wall takes a cell beside it."""
+    """Return the fraction of the way (k,) at points; on a wall, that of a free cell beside it."""
     way = corridor.way[_cells(corridor.space, points)]
     if not np.isfinite(way).all():
         for offset in (-1e-6, 1e-6):
@@ -202,7 +202,7 @@ def _nearness(corridor: Straightened, points: NDArray) -> dict[str, float]:
 
 
 def _in_layers(space: GridSpace, width: float, points: NDArray) -> NDArray[np.float64]:
-    """Return the fraction of points in each layer; corners of the corridor count as middle."""
+    """Return the fraction of points in each layer; corners of the corridor count as the middle."""
     depth = space.clearance(points) / (width / 2.0)
     layers = np.minimum((depth * N_LAYERS).astype(int), N_LAYERS - 1)
     return np.bincount(layers, minlength=N_LAYERS) / len(points)

@@ -1,9 +1,9 @@
 """
 The results of an experiment: a CSV file that grows, and the table that is read from it.
 
-The rows of the file follow one endless list: every case with seed 0, every case with seed 1, and
-so on. So an interrupted run resumes where the file ends, a longer run continues a shorter one, and
-all cases have the same number of rows, give or take one.
+The rows have a fixed order: every case with seed 0, every case with seed 1, and so on. So an
+interrupted run resumes where the file ends, a longer run continues a shorter one, and the numbers
+of rows of the cases differ by at most one.
 """
 
 from __future__ import annotations

@@ -55,7 +55,7 @@ PHONE = {'width': 390, 'height': 844, 'deviceScaleFactor': 2, 'mobile': True}
 
 @pytest.fixture(scope='module')
 def browser() -> Iterator[Any]:
-    """Return a browser that reaches nothing but files."""
+    """Return a browser without network access."""
     programs = [shutil.which(name) for name in ('chromium', 'chromedriver')]
     if None in programs:
         pytest.skip('needs chromium and chromedriver')
@@ -82,7 +82,7 @@ def through_the_door(rooms: OccupancyMap) -> list[object]:
 
 @pytest.fixture
 def page(browser: Any, run: Callable[..., Ran], tmp_path: Path) -> Iterator[Page]:
-    """Return the page of a request on the office map; no script may have failed in the end."""
+    """Return the page of a request on the office map, and check that no script fails."""
     file = tmp_path / 'page.html'
     ran = run('plan', OFFICE, *REQUEST, '--algorithm', 'hit_and_run', '--json', '--html', file)
     assert ran.code == 0, ran.err
@@ -95,13 +95,13 @@ class Page:
     """A page in the browser."""
 
     def __init__(self, browser: Any, file: Path, result: dict[str, Any] | None = None) -> None:
-        """Open it, and stop what plays by itself."""
+        """Open the page."""
         self.browser, self.file, self.result = browser, file, result
         browser.get_log('browser')
         browser.get(file.as_uri())
 
     def errors(self) -> list[str]:
-        """Return what went wrong since the page was opened."""
+        """Return the errors since the page was opened."""
         return [line['message'] for line in self.browser.get_log('browser')]
 
     def find(self, selector: str) -> Any:

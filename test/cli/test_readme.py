@@ -72,7 +72,7 @@ def leads_somewhere(page: Path, link: str) -> bool:
 
 
 def headings(page: str) -> set[str]:
-    """Return what links call the headings of a page."""
+    """Return the anchors of the headings of a page."""
     titles = re.findall(r'^#+ (.*)$', page, re.MULTILINE)
     return {re.sub(r'[^\w -]', '', title.lower()).replace(' ', '-') for title in titles}
 

@@ -1,4 +1,4 @@
-"""Experiments can be broken off, continued and repeated, and their files stay the same."""
+"""Experiments can be interrupted, resumed and repeated, and their files stay the same."""
 
 from collections.abc import Callable, Mapping
 import json
@@ -126,7 +126,7 @@ def test_more_runs_continue_fewer_and_fewer_read_their_part(whole: Path, tmp_pat
 
 def test_figure_and_numbers_say_what_was_run(whole: Path) -> None:
     for end in ('svg', 'md'):
-        # XML allows no -- in a comment, which is where matplotlib keeps the words of a figure.
+        # XML allows no -- in a comment, where matplotlib puts the text of a figure.
         text = (whole / f'arithmetic.{end}').read_text().replace('- -', '--')
         assert '4 runs of each, seeds 0 to 3' in text
         assert 'python -m hnr_planner experiment arithmetic --runs 4' in text

@@ -1,4 +1,4 @@
-"""Mixing: cells with the shares that they say, estimates around the truth, and known times."""
+"""Mixing: exact shares of cells, estimates on both sides of the truth, and known times."""
 
 from collections.abc import Callable, Iterator
 import dataclasses
@@ -63,7 +63,7 @@ DRAWN: dict[str, Callable[[int, np.random.Generator], Floats]] = {
 
 
 def surprise(mixing_set: MixingSet, points: Floats, shares: Floats) -> float:
-    """Return by how many deviations uniform points are farther from the shares than by chance."""
+    """Return the excess of uniform points' distance from the shares, in standard deviations."""
     distance = total_variation(mixing_set.cells(points), shares)
     return (distance.plug_in - distance.floor) * math.sqrt(len(points)) / 0.30
 

@@ -13,7 +13,7 @@ from .conftest import MapWriter
 
 
 def message(path: Path) -> str:
-    """Return the error that a file gives, which has to be one line that starts with its name."""
+    """Return the error of loading a file: one line that starts with its name."""
     with pytest.raises(MapFileError) as caught:
         load_map(path)
     text = str(caught.value)
