@@ -67,7 +67,7 @@ class Pair(NamedTuple):
 
 
 def answers(bench: Bench) -> Section:
-    """Measure what an answer of the node costs."""
+    """Return the section on the time of an answer besides its search."""
     measured = []
     for verdict in _measure(N_PAIRS_QUICK if bench.quick else N_PAIRS):
         show(f'{verdict.what}: {verdict.measured}')

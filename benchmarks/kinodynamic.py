@@ -125,7 +125,7 @@ def _courses(bench: Bench) -> list[Problem]:
 
 
 def _measure(course: Problem, session: ControlSession, quick: bool) -> Row:
-    """Run the planners in turns, so that other load on the machine affects all alike."""
+    """Return the runs on one corridor, in turns, so that other load affects all planners alike."""
     runs = RUNS_QUICK if quick else RUNS
     row = Row(course.name, {name: [] for name in ('ours', *OMPL)}, [], [])
     session.use(course.blocked_in_kernel)

@@ -6,6 +6,7 @@ from hnr_planner.maps import Corridor, FREE, OccupancyMap, OCCUPIED
 import numpy as np
 from numpy.typing import NDArray
 
+#: Side of a cell [m].
 RESOLUTION = 0.05
 
 

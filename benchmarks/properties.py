@@ -28,7 +28,7 @@ LOST = 0.2e-3
 
 
 def properties(bench: Bench) -> Section:
-    """Measure all properties."""
+    """Return the section on calls, preparation of maps, growth and limits of our planner."""
     measured = []
     for verdict in _measure(bench.quick):
         show(f'{verdict.what}: {verdict.measured}')

@@ -50,7 +50,7 @@ def _is_free(free_distance, labels, x, y):
 
 
 class Course:
-    """A grid, and OMPL set up on it."""
+    """A grid, and OMPL's setup for planning on it."""
 
     def __init__(self, file: str) -> None:
         blocked = read_grid(file)

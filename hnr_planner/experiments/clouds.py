@@ -21,6 +21,7 @@ from matplotlib.figure import Figure
 import numpy as np
 from numpy.typing import NDArray
 
+#: Widths of the arms [m], the one that is drawn, and the planners.
 WIDTHS = (0.8, 1.2, 1.6, 2.0)
 SHOWN_WIDTH = 1.2
 PLANNERS = ('hit_and_run', 'rrt')

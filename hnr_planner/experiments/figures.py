@@ -30,6 +30,7 @@ class Look(NamedTuple):
     mark: str
 
 
+#: Label, colour and marker of each algorithm.
 LOOKS = {
     'hit_and_run': Look('Hit-and-Run', '#0072B2', 'o'),
     'rrt': Look('RRT', '#D55E00', 's'),

@@ -56,7 +56,7 @@ class Results:
         return len(next(iter(self.columns.values()), ()))
 
     def __getitem__(self, column: str) -> NDArray[Any]:
-        """Return a column."""
+        """Return a column by its name."""
         return self.columns[column]
 
     def where(self, **values: object) -> Results:

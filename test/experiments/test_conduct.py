@@ -66,7 +66,7 @@ def written(folder: Path) -> dict[str, bytes]:
 
 @pytest.fixture(scope='module')
 def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Return the folder of an experiment of four runs, done at once."""
+    """Return the folder of an experiment of four runs, conducted in one call."""
     folder = tmp_path_factory.mktemp('whole')
     conduct(experiment(CASES), 4, folder, n_jobs=1)
     return folder

@@ -188,7 +188,7 @@ def test_what_else_is_no_yaml_is_named(tmp_path: Path, content: bytes, kind: str
 
 
 def encoded(kind: str) -> bytes:
-    """Return the file of an image of noise, which no format can make small."""
+    """Return the bytes of an image of noise, which no format compresses."""
     noise = np.random.default_rng(3).integers(0, 256, (50, 50)).astype(np.uint8)
     buffer = io.BytesIO()
     Image.fromarray(noise).save(buffer, kind)
