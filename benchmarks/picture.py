@@ -140,7 +140,7 @@ def _colour(label: str, group: str, lines: list[Line]) -> str:
 
 
 def _plot(axes: Axes, lines: list[Line], marker: str = '') -> list[tuple[str, str, float, float]]:
-    """Draw the lines; return where each ends, for its name."""
+    """Draw the lines; return label, colour and end of each, from which it gets its name."""
     ends = []
     for label, colour, x, y in lines:
         width = 2.5 if label.endswith('(ours)') else 1.2

@@ -147,7 +147,7 @@ def _take_turns(problem: Problem, entries: list[Entry], effort: Effort) -> None:
 
 
 def _best_known(problem: Problem, seconds: float) -> Floats:
-    """Return short lengths (k,) [m], by long searches and from the shortest path over cells."""
+    """Return the best known length (k,) [m] of each request, from long searches and from A*."""
     space, lengths = problem.space, []
     for start, goal in problem.requests:
         long = plan(space, start, goal, optimize_for=seconds, time_limit=10.0, seed=0)

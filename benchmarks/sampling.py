@@ -209,7 +209,7 @@ def _rooms() -> tuple[Space, Floats]:
 
 
 def _box_without_balls() -> tuple[Space, Floats]:
-    """Return the unit cube without ten balls around points of it, and a corner of what is left."""
+    """Return the unit cube less ten balls with centres in it, and a point in a corner."""
     dim, radius = 10, 0.5
     centres = np.random.default_rng(0).uniform(size=(10, dim))
     balls = [BallSpace(centre, radius) for centre in centres]

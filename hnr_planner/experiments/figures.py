@@ -129,7 +129,7 @@ def sign(figure: Figure, text: str) -> None:
 
 
 def save(figure: Figure, file: Path) -> None:
-    """Write a figure: the same bytes for the same results, and text as text."""
+    """Write a figure; the same results give the same bytes, and text stays text in an SVG file."""
     with rc_context({'svg.hashsalt': 'hnr_planner', 'svg.fonttype': 'none'}):
         figure.savefig(
             file, dpi=200, facecolor='white', metadata={'Date': None}, bbox_inches='tight'

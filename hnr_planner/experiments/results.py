@@ -153,7 +153,7 @@ class ResultsFile:
         )
 
     def _check_note(self) -> dict[str, str]:
-        """Refuse results of other sources of the core, which might differ."""
+        """Refuse results that were computed with other sources of the core."""
         note: dict[str, str] = json.loads(self._note.read_text(encoding='utf-8'))
         now = made_with()
         if note['core'] != now['core']:

@@ -1,4 +1,4 @@
-"""Check pictures, whatever they show."""
+"""The check that a file is a picture in the expected colours."""
 
 from pathlib import Path
 

@@ -76,7 +76,7 @@ def data_of(file: Path) -> dict[str, Any]:
 
 
 def through_the_door(rooms: OccupancyMap) -> list[object]:
-    """Return a start in one room and a goal in the other."""
+    """Return arguments for a start in one room and a goal in the other."""
     return ['--start', *at(rooms, 5, 5), '--goal', *at(rooms, 8, 75)]
 
 
