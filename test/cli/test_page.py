@@ -21,7 +21,7 @@ from typing import Any
 from hnr_planner.core import GridSpace, plan
 from hnr_planner.core.planning.registry import PLANNERS
 from hnr_planner.maps import load_map, OccupancyMap
-from hnr_planner.page.write import path_as_found
+from hnr_planner.page.write import COLOURS, path_as_found
 from matplotlib.colors import to_rgb
 import numpy as np
 from PIL import Image
@@ -43,12 +43,8 @@ OPTIONS = (
 )
 REQUEST = ('--start', 3, 22, '--goal', 34, 5, '--robot-radius', 0.22, '--seed', 3)
 REQUEST += ('--optimize-for', 0, '--time-limit', 600)
-SHOWN = {
-    'hit_and_run': '#0072B2',
-    'rrt': '#D55E00',
-    'hit_and_run_connect': '#009E73',
-    'rrt_connect': '#CC79A7',
-}
+#: Every planner that searches, with its colour on the page.
+SHOWN = dict(zip((entry.name for entry in PLANNERS if entry.name != 'auto'), COLOURS, strict=False))
 PATIENCE = 60.0
 PHONE = {'width': 390, 'height': 844, 'deviceScaleFactor': 2, 'mobile': True}
 
