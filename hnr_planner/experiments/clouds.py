@@ -154,9 +154,9 @@ def _searched(corridor: Straightened, result: PlanResult) -> dict[str, float]:
 def _arrivals(way: NDArray) -> NDArray[np.float64]:
     """Return the number of samples (N_PARTS,) before the first one in each section of the way."""
     farthest = np.maximum.accumulate(way)
-    parts = np.linspace(0.0, 1.0, N_PARTS + 1)[1:]
+    fractions = np.linspace(0.0, 1.0, N_PARTS + 1)[1:]
     # The search ends in the goal's region, which begins before the goal.
-    return np.minimum(np.searchsorted(farthest, parts), len(way) - 1).astype(float)
+    return np.minimum(np.searchsorted(farthest, fractions), len(way) - 1).astype(float)
 
 
 def _way(corridor: Straightened, points: NDArray) -> NDArray[np.float64]:

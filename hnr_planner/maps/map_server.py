@@ -7,7 +7,7 @@ With v the grey value of a pixel (0..255), n = v / 255 and occ = n if ``negate``
 trinary  occ <= free_thresh: 0; else occ >= occupied_thresh: 100; else -1
 scale    the same ends, and round(100 (occ - free_thresh) / (occupied_thresh - free_thresh))
          between them
-raw      v where it is 0..100, else -1, whatever ``negate`` says
+raw      v where it is 0..100, else -1; ``negate`` has no effect
 =======  ====================================================================================
 
 In trinary and scale a pixel that is not fully opaque is -1. The image's last row is the grid's

@@ -44,7 +44,9 @@ OPTIONS = (
 REQUEST = ('--start', 3, 22, '--goal', 34, 5, '--robot-radius', 0.22, '--seed', 3)
 REQUEST += ('--optimize-for', 0, '--time-limit', 600)
 #: Every planner that searches, with its colour on the page.
-SHOWN = dict(zip((entry.name for entry in PLANNERS if entry.name != 'auto'), COLOURS, strict=False))
+SHOWN = dict(
+    zip((entry.name for entry in PLANNERS if entry.name != 'auto'), COLOURS, strict=False)
+)
 PATIENCE = 60.0
 PHONE = {'width': 390, 'height': 844, 'deviceScaleFactor': 2, 'mobile': True}
 
