@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import os
 from pathlib import Path
 import sys
 import webbrowser
@@ -69,7 +70,11 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Run the experiments, print their tables, and return the exit code."""
+    from hnr_planner.core.kernels import modes
+
     require_extra('experiments', 'an experiment')
+    # Interpreted, an experiment would take days: all its processes wait for machine code.
+    modes.set_mode(os.environ.setdefault(modes.VARIABLE, modes.Mode.COMPILED.value))
     for name in arguments.names or NAMES:
         _conduct(name, arguments)
     return 0

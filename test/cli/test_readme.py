@@ -8,6 +8,7 @@ import sys
 from test.cli.conftest import ROOT
 from test.cli.pictures import check_picture
 
+from hnr_planner.core.kernels import modes
 from hnr_planner.core.planning.registry import PLANNERS
 from PIL import Image
 import pytest
@@ -34,7 +35,11 @@ def run(command: list[str], folder: Path) -> str:
     done = subprocess.run(
         command,
         cwd=folder,
-        env={'PYTHONPATH': str(ROOT), 'PATH': f'{Path(sys.executable).parent}:/usr/bin:/bin'},
+        env={
+            'PYTHONPATH': str(ROOT),
+            'PATH': f'{Path(sys.executable).parent}:/usr/bin:/bin',
+            modes.VARIABLE: modes.Mode.COMPILED.value,
+        },
         capture_output=True,
         text=True,
         timeout=300,
