@@ -2,7 +2,7 @@
 Compare with OMPL, grid search and hopsy: ``python -m benchmarks [--quick]``.
 
 HNR_MAPS names a folder of further maps. The full run writes ``benchmarks/results.md`` and
-``docs/benchmark.png``; a quick one writes into ``build/benchmarks`` and is good for a look only.
+``docs/benchmark.png``; a quick one writes into ``build/benchmarks``, and its figures are rough.
 """
 
 from __future__ import annotations
@@ -31,10 +31,11 @@ from benchmarks.sections import Bench, SectionOf, verdict_table
 from benchmarks.short_path import short_path
 from benchmarks.success import success
 from hnr_planner.core import warm_up
+from hnr_planner.core.kernels import modes
 
 ROOT = Path(__file__).resolve().parents[1]
 
-#: The report, in this order.
+#: Sections of the report, in order.
 SECTIONS: tuple[SectionOf, ...] = (
     first_path,
     short_path,
@@ -52,9 +53,11 @@ SECTIONS: tuple[SectionOf, ...] = (
 def main() -> None:
     """Measure, print, and write the report."""
     parser = argparse.ArgumentParser(prog='python -m benchmarks', description=__doc__)
-    parser.add_argument('--quick', action='store_true', help='a minute, for a look')
+    parser.add_argument('--quick', action='store_true', help='some minutes, for a look')
     quick = parser.parse_args().quick
     began = time.perf_counter()
+    # Machine code is measured, also in the processes that sections start.
+    modes.set_mode(os.environ.setdefault(modes.VARIABLE, modes.Mode.COMPILED.value))
     warm_up()
     courses = problems(quick)
     with on_one_core():

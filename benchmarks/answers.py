@@ -2,8 +2,8 @@
 Measure what an answer costs besides its search, and what rclpy alone needs to send it.
 
 Two processes answer the same service in turns: the planning node, and a node that does nothing
-but send a ready-made path with as many poses. One client times both, from its call to the answer
-in its hands; how long the search took is in the outcome of the request.
+but send a ready-made path with as many poses. One client times both, from its call to the
+response; the time of the search is in the outcome of the request.
 """
 
 from __future__ import annotations
@@ -44,13 +44,15 @@ from visualization_msgs.msg import MarkerArray
 #: Cells along a side, cells across a corridor, and side of a cell [m] of the map: a serpentine,
 #: so that a search has more samples than a marker shows.
 SIDE, CORRIDOR, RESOLUTION = 200, 5, 0.1
+#: Ends of the long path, and a goal outside the map [m].
 START, GOAL, NOWHERE = (0.25, 0.25), (19.75, 19.75), (-1.0, -1.0)
+#: About how many poses the long path has.
 N_POSES = 2000
 #: With a seed, every request gets the same search and the same path.
 SEED = 1
 #: Time [s] for the planning node to publish everything about a request.
 PAUSE = 0.02
-#: What an answer may cost besides its search, as a multiple of what rclpy needs.
+#: Target: time of an answer besides its search, as a multiple of the ready-made answer's.
 MOST = 1.5
 #: Pairs of answers that are timed.
 N_PAIRS, N_PAIRS_QUICK = 200, 20
@@ -65,7 +67,7 @@ class Pair(NamedTuple):
 
 
 def answers(bench: Bench) -> Section:
-    """Measure what an answer of the node costs."""
+    """Return the section on the time of an answer besides its search."""
     measured = []
     for verdict in _measure(N_PAIRS_QUICK if bench.quick else N_PAIRS):
         show(f'{verdict.what}: {verdict.measured}')
@@ -74,7 +76,7 @@ def answers(bench: Bench) -> Section:
 
 
 def _measure(n_pairs: int) -> Iterator[Verdict]:
-    """Measure an empty answer and a long path, without and with subscribers to the pictures."""
+    """Measure an empty and a long answer, without and with subscribers to samples and markers."""
     data = _serpentine()
     length = plan(GridSpace.from_occupancy(data, RESOLUTION), START, GOAL, seed=SEED).length
     settings = {'seed': SEED, 'time_limit': 10.0, 'pose_spacing': length / N_POSES}
@@ -137,7 +139,7 @@ def _quiet_domain(folder: str) -> Iterator[None]:
 
 @contextmanager
 def _process(*module_and_arguments: str) -> Iterator[None]:
-    """Run a module for the duration of a ``with`` block."""
+    """Run a Python module in a process while the block runs."""
     process = subprocess.Popen([sys.executable, '-m', *module_and_arguments])
     try:
         yield
@@ -147,7 +149,7 @@ def _process(*module_and_arguments: str) -> Iterator[None]:
 
 
 class _Caller:
-    """The client; while it waits for an answer it does nothing that could delay it."""
+    """Client of both nodes; while it waits for an answer it does nothing that could delay it."""
 
     def __init__(self) -> None:
         self._context = Context()
@@ -205,7 +207,7 @@ class _Caller:
         request = GetPlan.Request(start=pose(*START), goal=goal)
         began = time.perf_counter()
         future = client.call_async(request)
-        # Not spin_until_future_complete: called again and again, it keeps all tasks of before.
+        # spin_until_future_complete would keep the tasks of all earlier calls.
         while not future.done() and time.perf_counter() - began < patience:
             self._executor.spin_once(patience)
         elapsed = time.perf_counter() - began

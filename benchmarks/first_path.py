@@ -18,12 +18,13 @@ from benchmarks.sections import (
 )
 from benchmarks.standings import Summary, summary
 
-#: What a call from Python may cost above the best of the others [s].
+#: Time that a call from Python may take in addition [s].
 CALL = 30e-6
-#: Below this time of RRTConnect [s] it is no match on speed.
+#: Where RRTConnect takes less than this [s], the two are not compared.
 NO_MATCH = 0.1e-3
+#: Target: ours over RRTConnect.
 HALF = 0.5
-#: What is asked, and the bounds, in words.
+#: The targets and their bounds, as text.
 ASKED = (
     (
         'first path, `auto`, median against RRTConnect',

@@ -1,4 +1,4 @@
-"""Judge the paths: every path of every competitor is checked exactly against the map."""
+"""Check every path of every competitor exactly against the map, and measure it."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from benchmarks.competitors import Run
 from benchmarks.problems import Problem
 import numpy as np
 
-#: Paths of each competitor and problem that the slow, independent checker sees too, and the
-#: vertices that they have at most.
+#: Paths of each competitor and problem that the slow, independent checker verifies as well, and
+#: the largest number of vertices that it takes.
 JUDGED_TWICE, VERTICES = 5, 200
-#: Paths of each whose clearance is measured.
+#: Paths of each competitor and problem whose clearance is measured.
 CLEARANCES = 60
-#: How near a path has to begin and end to what was asked for [m].
+#: Largest distance of the ends of a path from start and goal [m].
 NEAR = 1e-9
 
 
@@ -31,14 +31,14 @@ class Record(NamedTuple):
 
 @dataclass
 class Judge:
-    """Judge of one competitor's runs on one problem, which keeps the faults it finds."""
+    """Checker of one competitor's paths on one problem; ``complaints`` has the faults found."""
 
     problem: Problem
     complaints: list[str] = field(default_factory=list)
     n_judged: int = 0
 
     def judge(self, number: int, run: Run) -> Record:
-        """Measure the path for request ``number``, once it is known to be valid."""
+        """Check the path of a run for request ``number``, and measure it if it is valid."""
         if len(run.path) == 0:
             return Record(number, run.seconds, np.inf, np.nan, False)
         self.n_judged += 1

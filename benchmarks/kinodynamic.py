@@ -19,15 +19,18 @@ from hnr_planner.core.systems import DoubleIntegrator
 from hnr_planner.maps import serpentine
 import numpy as np
 
+#: The robot, and the radius of the goal's region [m].
 SYSTEM = DoubleIntegrator(dim=2, max_acceleration=1.0, max_speed=2.0)
 RADIUS = 0.5
 #: Duration of a step of OMPL's propagation [s].
 STEP = 0.1
+#: OMPL's planners that take part.
 OMPL = ('RRT', 'SST', 'KPIECE1', 'EST')
-#: Time for a first trajectory, and for a short one [s].
+#: Time limit for a first trajectory, and time to use for a short one [s].
 LIMIT, LONG = 5.0, 1.0
+#: Runs for each request.
 RUNS, RUNS_QUICK = 7, 2
-#: What is asked: the time of the fastest of OMPL's, and the duration of SST's.
+#: Target: our time over that of the fastest of OMPL's planners.
 HALF = 0.5
 
 EXPLAINED = """\
@@ -44,7 +47,7 @@ class Run(NamedTuple):
 
 
 class Row(NamedTuple):
-    """One course: runs for a first trajectory by planner, and runs of a second each."""
+    """Runs on one corridor: for a first trajectory by planner, and of ``LONG`` seconds each."""
 
     name: str
     first: dict[str, list[Run]]
@@ -122,7 +125,7 @@ def _courses(bench: Bench) -> list[Problem]:
 
 
 def _measure(course: Problem, session: ControlSession, quick: bool) -> Row:
-    """Measure in turns, so that other load on the machine affects all alike."""
+    """Return the runs on one corridor, in turns, so that other load affects all planners alike."""
     runs = RUNS_QUICK if quick else RUNS
     row = Row(course.name, {name: [] for name in ('ours', *OMPL)}, [], [])
     session.use(course.blocked_in_kernel)

@@ -6,6 +6,7 @@ from hnr_planner.maps import Corridor, FREE, OccupancyMap, OCCUPIED
 import numpy as np
 from numpy.typing import NDArray
 
+#: Side of a cell [m].
 RESOLUTION = 0.05
 
 
@@ -58,7 +59,7 @@ def slanted_z(width: float) -> Corridor:
 
 
 def _doors(rng: np.random.Generator, side: int) -> list[tuple[int, int, bool]]:
-    """Open doors (row, column, to the row above or to the column beside) by a random walk."""
+    """Return doors (row, column, whether up or right): a random spanning tree, and some more."""
     opened = []
     seen, trail = {(0, 0)}, [(0, 0)]
     while trail:

@@ -33,7 +33,7 @@ OTHERS = (
     '#555555',
     '#999999',
 )
-#: Of ours, those beside the others; of the many, those whose line over the spirals says something.
+#: Our competitors in the panels on maps, and all competitors in the panel on spirals.
 SHOWN = ('auto (ours)', 'auto + simplify (ours)', 'auto, optimized (ours)')
 ON_SPIRALS = (
     'auto (ours)',
@@ -46,9 +46,9 @@ ON_SPIRALS = (
     'Theta* (grid)',
     'wavefront (grid)',
 )
-#: What is nearer to the best than this [%] is drawn here.
+#: Least excess over the best known length that is drawn [%]; smaller ones are drawn there.
 LEAST = 0.05
-#: Where a name may stand beside the end of its line [points], best first.
+#: Positions of a name beside the end of its line [points], the best first.
 PLACES = tuple(
     ((x, y), align)
     for y in (3, -9, 12, -18, 21, -27, 30, -36)
@@ -56,7 +56,7 @@ PLACES = tuple(
 )
 
 Floats = NDArray[np.float64]
-#: A competitor's label, its colour, and its line.
+#: Label and colour of a competitor, and the coordinates of its line.
 Line = tuple[str, str, Floats, Floats]
 
 
@@ -103,7 +103,7 @@ def _on_maps(standings: list[Standing], groups: tuple[str, ...]) -> list[Line]:
 
 
 def _typical(courses: list[tuple[Floats, Floats]]) -> tuple[Floats, Floats]:
-    """Take medians over courses step by step; one that ends stays as it is while half go on."""
+    """Return medians over courses, step by step; a course that ends keeps its last values."""
     steps = int(np.median([len(times) for times, _ in courses]))
     longer = [
         [np.pad(values[:steps], (0, max(steps - len(values), 0)), 'edge') for values in each]
@@ -140,7 +140,7 @@ def _colour(label: str, group: str, lines: list[Line]) -> str:
 
 
 def _plot(axes: Axes, lines: list[Line], marker: str = '') -> list[tuple[str, str, float, float]]:
-    """Draw the lines; return where each ends, for its name."""
+    """Draw the lines; return label, colour and end of each, from which it gets its name."""
     ends = []
     for label, colour, x, y in lines:
         width = 2.5 if label.endswith('(ours)') else 1.2

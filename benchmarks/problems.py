@@ -17,11 +17,13 @@ from numpy.typing import NDArray
 Floats = NDArray[np.float64]
 
 OFFICE = Path(__file__).resolve().parents[1] / 'config' / 'maps' / 'office.yaml'
-#: Robots [m] on the maps that were made by one; on others a point moves.
+#: Radius of the robot [m] on maps of its size; on others the robot is a point.
 ROBOT_RADIUS = dict.fromkeys(
     ('office', 'depot', 'tb3_sandbox', 'warehouse', 'maze', 'clutter'), 0.22
 )
+#: Widths of the spirals' corridors [m].
 WIDTHS = (2.0, 1.6, 1.2, 1.0, 0.8, 0.6, 0.4)
+#: Requests on each map.
 PAIRS = 20
 
 
@@ -30,7 +32,7 @@ class Problem:
     """
     A ready space and requests in it.
 
-    ``requests`` is (k, 2, 2): start and goal [m] of each, in one part of the free space.
+    ``requests`` is (k, 2, 2): start and goal [m] of each, in one component of the free space.
     """
 
     name: str

@@ -5,13 +5,13 @@ from __future__ import annotations
 import sys
 import time
 
-#: In a log, news that come sooner than this after others [s] are left out.
+#: Least time between two lines of progress in a log [s].
 PATIENCE = 10.0
 _said_last = [0.0]
 
 
 def show(news: str) -> None:
-    """Print what is going on now."""
+    """Print the current step."""
     if sys.stderr.isatty():
         print(f'\r\033[K{news}', end='', file=sys.stderr, flush=True)
     elif time.monotonic() - _said_last[0] > PATIENCE:

@@ -21,13 +21,14 @@ from numpy.typing import NDArray
 
 #: Side [cells] of the coarsest building, and how often each cell of it is repeated.
 BUILDING, ENLARGED = 500, (1, 4, 16)
+#: Side of the map whose preparation is timed [cells].
 READY_SIDE = 4000
-#: Time [s] off the core that a call may have and still tell about us.
+#: A call that had no core for longer than this [s] is counted apart.
 LOST = 0.2e-3
 
 
 def properties(bench: Bench) -> Section:
-    """Measure all properties."""
+    """Return the section on calls, preparation of maps, growth and limits of our planner."""
     measured = []
     for verdict in _measure(bench.quick):
         show(f'{verdict.what}: {verdict.measured}')
@@ -108,7 +109,7 @@ def _growth(factors: tuple[int, ...], n_runs: int) -> Verdict:
 
 
 def _endless() -> tuple[GridSpace, Any, Any]:
-    """Return a request that no planner ends in the time that it gets here."""
+    """Return a space and a request that no planner can solve in the times used here."""
     made = spiral(0.12)
     return GridSpace.from_blocked(made.blocked, made.resolution), made.start, made.goal
 
@@ -152,8 +153,8 @@ class _Lateness:
     """
     Delays with which calls returned [s].
 
-    What is asked holds for an idle core, so calls that did not have one for longer than LOST are
-    counted apart.
+    The target holds for an idle core, so calls that had none for longer than ``LOST`` are counted
+    apart.
     """
 
     def __init__(self) -> None:
@@ -162,7 +163,7 @@ class _Lateness:
 
     @contextmanager
     def one(self, due: list[float]) -> Iterator[None]:
-        """Time a call; when it was due to end is in the list by the time that it does."""
+        """Time the block; by its end ``due`` has the time at which it was due to end."""
         began, worked_before = time.perf_counter(), time.thread_time()
         yield
         ended, worked = time.perf_counter(), time.thread_time() - worked_before

@@ -2,8 +2,8 @@
 Run every competitor on every problem, in turns, and judge every path.
 
 Turns are short and rotate, so that other load on the machine affects all alike. A turn is a
-few requests in a row: what comes first after somebody else finds cold caches, the others do not.
-Those that can use a given time run once more with one time after the other.
+few requests in a row: the first one after another competitor's turn finds cold caches, the others
+do not. Competitors that can use a given time run again with each of several times.
 """
 
 from __future__ import annotations
@@ -20,9 +20,9 @@ from hnr_planner.core import plan, simplify
 from hnr_planner.experiments.grid_search import a_star, pull_string
 import numpy as np
 
-#: Requests in one turn at most, and time [s] after which it ends, about.
+#: Largest number of requests in one turn, and about its time [s].
 TURN, TURN_TIME = 50, 0.05
-#: Runs of a request at most for one that is given a time.
+#: Largest number of runs of a request with a given time.
 SEEDS_IN_TIME = 4
 
 
@@ -33,17 +33,17 @@ class Effort(NamedTuple):
     Attributes
     ----------
     seconds : float
-        For each competitor and problem.
+        Time for each competitor and problem [s].
     runs_least : int
-        Runs of each at least, whatever it takes, as far as a competitor asks for them.
+        Least number of runs, whatever time they take, of competitors that want as many.
     runs_first, runs_short : int
-        Runs at most of those after a first and after a short path.
+        Largest number of runs of competitors that search for a first and for a short path.
     seconds_best : float
-        Of the long search for the best known length of each request.
+        Time of the long search for the best known length of each request [s].
     times : tuple of float
-        What those that use a given time get [s].
+        Times for competitors that can use a given time [s].
     requests_in_time : int
-        Requests that they get on each problem at most.
+        Largest number of requests on each problem with each of ``times``.
 
     """
 
@@ -56,13 +56,14 @@ class Effort(NamedTuple):
     requests_in_time: int
 
 
+#: Effort of a full benchmark, and of a quick one.
 FULL = Effort(1.0, 1000, 1000, 200, 0.25, (0.001, 0.004, 0.016, 0.064, 0.256), 10)
 QUICK = Effort(0.15, 2, 100, 30, 0.05, (0.004, 0.064), 2)
 
 
 @dataclass
 class Entry:
-    """A competitor on a problem: its runs, those with a given time [s], and its judge."""
+    """A competitor on a problem: its runs, those by the time [s] they were given, its judge."""
 
     competitor: Competitor
     judge: Judge
@@ -78,7 +79,7 @@ class Entry:
         return n_runs < least or (n_runs < most and self.spent < effort.seconds)
 
     def turn(self, problem: Problem, solver: Solver) -> None:
-        """Answer some requests."""
+        """Run as many requests as fit into one turn."""
         n_runs = len(self.records)
         fitting = int(n_runs * TURN_TIME / self.spent) if n_runs else 1
         numbers = np.arange(n_runs, n_runs + min(max(fitting, 1), TURN)) % len(problem.requests)
@@ -87,7 +88,7 @@ class Entry:
         self.records += records
 
     def run_in_time(self, problem: Problem, effort: Effort) -> None:
-        """Answer requests with one time to use after the other."""
+        """Run requests with each of the given times."""
         assert self.competitor.within
         n_requests = len(problem.requests)
         numbers = np.arange(min(effort.requests_in_time, SEEDS_IN_TIME * n_requests)) % n_requests
@@ -146,7 +147,7 @@ def _take_turns(problem: Problem, entries: list[Entry], effort: Effort) -> None:
 
 
 def _best_known(problem: Problem, seconds: float) -> Floats:
-    """Return short lengths (k,) [m], by long searches and from the shortest path over cells."""
+    """Return the best known length (k,) [m] of each request, from long searches and from A*."""
     space, lengths = problem.space, []
     for start, goal in problem.requests:
         long = plan(space, start, goal, optimize_for=seconds, time_limit=10.0, seed=0)

@@ -1,8 +1,8 @@
 """
 Run a node that sends a ready-made path: ``python -m benchmarks.ready_made N_POSES``.
 
-It is what rclpy itself needs for an answer: a request is taken, and a message that was there
-before is sent back by an executor with threads, such as every node has that stays responsive.
+Its time is what rclpy itself needs for an answer: it takes a request, and sends a message that
+existed before. Its executor has threads, as that of every node that stays responsive.
 """
 
 from __future__ import annotations

@@ -38,7 +38,7 @@ with more and more time, for those that can use it. Names stand at the ends.
 
 
 def report(bench: Bench, sections: list[Section], seconds: float, picture: str) -> str:
-    """Write it all down; ``picture`` is where the picture lies, seen from the report."""
+    """Return the report; ``picture`` is the path of the picture relative to it."""
     verdicts = [verdict for section in sections for verdict in section.verdicts]
     parts = ['# Benchmark', _machine(seconds), missing_words(bench.missing)]
     parts += ['## What is asked', verdict_table(verdicts)]

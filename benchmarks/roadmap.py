@@ -2,8 +2,8 @@
 Section: roadmaps; what they cost to build and repair, and the quality of their answers.
 
 A request is the whole call of ``plan()`` from Python; lengths are ratios over the shortest path
-known, from long searches and from a roadmap of twice the draws. A map is mended after a block of
-twenty cells' side has come up in a free place, and again when it has gone.
+known, from long searches and from a roadmap of twice the draws. A roadmap is repaired after a
+block of 20 x 20 cells has been put into free space, and again after it has been removed.
 """
 
 from __future__ import annotations
@@ -18,13 +18,13 @@ from benchmarks.sections import Bench, on_all, Section, table
 from hnr_planner.core import GridSpace, plan, Roadmap
 import numpy as np
 
-#: Times that each request is asked; searches for the shortest path known.
+#: Repetitions of each request; searches for the shortest path known.
 REPEATS = 20
 SEARCHES, SEARCHES_QUICK = 100, 20
-#: Side of the block that comes and goes [cells].
+#: Side of the block that is put in and removed [cells].
 BLOCK = 20
 SEED = 0
-#: What is asked of a request: the median of its time [s] and of its length over the best known.
+#: Targets: median time of a request [s], and median length over the best known.
 REQUEST, LENGTH = 0.1e-3, 1.01
 
 Result = TypeVar('Result')

@@ -37,10 +37,10 @@ from hnr_planner.core import (
 )
 import numpy as np
 
-#: Time [s] that a turn takes, about, and how many turns there are.
+#: About the time of a turn [s], and numbers of turns.
 TURN = 0.05
 TURNS, TURNS_QUICK = 7, 3
-#: Steps that the first try at a turn takes.
+#: Number of steps by which the length of a turn is found.
 FIRST_TRY = 1000
 #: Our walks, and what hopsy calls them.
 HIT_AND_RUN, COORDINATE = 'hit_and_run', 'coordinate_hit_and_run'
@@ -48,7 +48,7 @@ PROPOSALS = {
     HIT_AND_RUN: 'UniformHitAndRunProposal',
     COORDINATE: 'UniformCoordinateHitAndRunProposal',
 }
-#: What is asked: ours over hopsy's, by walk and dimension.
+#: Targets: our steps a second over those of hopsy, by walk and dimension.
 AT_LEAST = {
     HIT_AND_RUN: {2: 4.0, 10: 2.0, 100: 1.8},
     COORDINATE: {2: 2.0, 10: 2.0, 100: 2.0},
@@ -59,9 +59,9 @@ GRID_AT_LEAST, BALLS_AT_LEAST = 0.45, 0.8
 ESS_DIM, ESS_CHAINS, ESS_DRAWS = 50, 2, 2000
 ESS_THIN = {HIT_AND_RUN: (100, 400), COORDINATE: (50, 100, 200)}
 BILLIARD, BILLIARD_THIN = 'BilliardWalkProposal', (1, 4)
-#: An import may take so many times what its two largest libraries take.
+#: Target: time of the import over that of its two largest libraries.
 IMPORT_AT_MOST = 1.5
-IMPORTS, LIBRARIES = 'import hnr_planner.core', 'import numba, scipy'
+IMPORTS, LIBRARIES = 'from hnr_planner import GridSpace, plan, sample', 'import numba, scipy'
 COUNT_COMPILATIONS = f"""
 from numba.core import event
 with event.install_recorder('numba:compile') as recorder:
@@ -69,12 +69,12 @@ with event.install_recorder('numba:compile') as recorder:
 print(len(recorder.buffer))
 """
 
-#: Takes so many steps, and returns their draws, one of every so many: (chains, draws, dim).
+#: Function that makes ``n_draws`` draws, ``thin`` steps apart: (chains, n_draws, dim).
 Runner = Callable[[int, int], Floats]
 
 
 class Polytope(NamedTuple):
-    """The points with ``a x < b``, and one of them."""
+    """A polytope ``a x < b``, and a point in it."""
 
     name: str
     a: Floats
@@ -89,13 +89,13 @@ def cube(dim: int) -> Polytope:
 
 
 def simplex(dim: int) -> Polytope:
-    """Return x > 0, sum x < 1."""
+    """Return the simplex x > 0, sum x < 1."""
     a = np.vstack([-np.eye(dim), np.ones((1, dim))])
     return Polytope('simplex', a, np.append(np.zeros(dim), 1.0), np.full(dim, 0.5 / dim))
 
 
 def cross_polytope(dim: int) -> Polytope:
-    """Return the sum of |x| < 1, by its 2^dim facets."""
+    """Return the cross-polytope, sum |x| < 1, by its 2^dim facets."""
     a = np.stack(np.meshgrid(*[[-1.0, 1.0]] * dim), axis=-1).reshape(-1, dim)
     return Polytope('cross-polytope', a, np.ones(len(a)), np.full(dim, 0.1 / dim))
 
@@ -105,7 +105,7 @@ POLYTOPES += [cross_polytope(dim) for dim in (2, 10)]
 
 
 def ours(space: Space, start: Floats, walk: str, n_chains: int = 1) -> Runner:
-    """Return a stepper of ours, which continues its chain."""
+    """Return a function that continues chains of ours."""
     chains = [begin_chains(space, start, n_chains=n_chains, seed=1)]
 
     def run(n_draws: int, thin: int) -> Floats:
@@ -116,7 +116,7 @@ def ours(space: Space, start: Floats, walk: str, n_chains: int = 1) -> Runner:
 
 
 def hopsys(hopsy: Any, polytope: Polytope, proposal: str, n_chains: int = 1) -> Runner:
-    """Return a stepper of hopsy's, which continues its chain."""
+    """Return a function that continues chains of hopsy."""
     problem = hopsy.Problem(polytope.a, polytope.b)
     kind = getattr(hopsy, proposal)
     chains = [
@@ -134,7 +134,7 @@ def hopsys(hopsy: Any, polytope: Polytope, proposal: str, n_chains: int = 1) -> 
 
 @dataclass(frozen=True)
 class Duel:
-    """Seconds of processor time for a step of ours and of hopsy's, in words where."""
+    """Processor time of a step, ours and of hopsy [s], with the target for their ratio."""
 
     what: str
     ours: float
@@ -148,14 +148,14 @@ class Duel:
 
     @property
     def verdict(self) -> Verdict:
-        """Target and measurement."""
+        """Return target and measurement."""
         measured = f'{1e-6 / self.ours:.3g} M against {1e-6 / self.hopsys:.3g} M: {self.ratio:.2f}'
         what = f'steps a second, {self.what}'
         return Verdict(what, f'{self.at_least} x', measured, self.ratio >= self.at_least)
 
 
 def duel(what: str, at_least: float, both: tuple[Runner, Runner], n_turns: int) -> Duel:
-    """Measure both in turns."""
+    """Measure the time of a step of both, in turns."""
     show(what)
     steps = [_fitting(run) for run in both]
     times: tuple[list[float], list[float]] = [], []
@@ -209,7 +209,7 @@ def _rooms() -> tuple[Space, Floats]:
 
 
 def _box_without_balls() -> tuple[Space, Floats]:
-    """Return the unit cube without ten balls around points of it, and a corner of what is left."""
+    """Return the unit cube less ten balls with centres in it, and a point in a corner."""
     dim, radius = 10, 0.5
     centres = np.random.default_rng(0).uniform(size=(10, dim))
     balls = [BallSpace(centre, radius) for centre in centres]
@@ -217,7 +217,7 @@ def _box_without_balls() -> tuple[Space, Floats]:
 
 
 class Rate(NamedTuple):
-    """Effective draws a second of processor time, and with which walk."""
+    """Effective draws a second of processor time, with the walk and its thinning."""
 
     per_second: float
     walk: str
@@ -241,7 +241,7 @@ def effective_draws(hopsy: Any, polytope: Polytope) -> tuple[list[Rate], list[Ra
 
 
 def _rate(run: Runner, walk: str, thin: int) -> Rate:
-    """Measure after a tenth as many draws for a start."""
+    """Return the rate of effective draws, measured after a tenth as many for a start."""
     show(f'effective draws, {walk}, every {thin} steps')
     run(ESS_DRAWS // 10, thin)
     seconds, draws = _timed(lambda: run(ESS_DRAWS, thin))
@@ -260,7 +260,7 @@ def import_time(statement: str, n_times: int) -> float:
 
 
 def imports(n_times: int) -> Iterator[Verdict]:
-    """Judge the import."""
+    """Yield the verdicts on the import of the package."""
     show(IMPORTS)
     ours, libraries = import_time(IMPORTS, n_times), import_time(LIBRARIES, n_times)
     measured = f'{ours:.2f} s against {libraries:.2f} s: {ours / libraries:.2f}'
@@ -275,7 +275,7 @@ def imports(n_times: int) -> Iterator[Verdict]:
 
 
 def sampling(bench: Bench) -> Section:
-    """Measure everything; without hopsy the import alone."""
+    """Measure steps, effective draws and the import; without hopsy the import alone."""
     n_turns = TURNS_QUICK if bench.quick else TURNS
     verdicts: list[Verdict] = []
     rows: list[list[str]] = []

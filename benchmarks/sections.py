@@ -24,13 +24,13 @@ class Bench:
     Attributes
     ----------
     quick : bool
-        Whether a look is all that is wanted.
+        Whether to measure little, for a first look.
     problems : list of Problem
         Maps and requests.
     standings : list of Standing
-        The races on them, one each.
+        Results of all competitors on each problem.
     missing : list of str
-        What cannot take part on this machine, and why.
+        Sentences about what cannot run on this machine, and why.
 
     """
 
@@ -50,7 +50,7 @@ class Verdict(NamedTuple):
 
 
 class Section(NamedTuple):
-    """A part of the report: heading, body in Markdown, and verdicts."""
+    """Section of the report: heading, body in Markdown, and verdicts."""
 
     title: str
     body: str
@@ -86,12 +86,12 @@ def ratio(value: float) -> str:
 
 
 def shortfalls(fails: dict[str, bool]) -> str:
-    """Write what falls short, of what is said to fail or not; 'no' for nothing."""
+    """Return the names of the targets that are missed (True), as text; 'no' for none."""
     return ', '.join(what for what, short in fails.items() if short) or 'no'
 
 
 def on_all(what: str, to_reach: str, falls_short: dict[str, str], n_problems: int) -> Verdict:
-    """Judge what is asked on every problem; ``falls_short`` says by how much on which."""
+    """Return the verdict on a target on all problems, with the ``falls_short`` of each by name."""
     held = f'on {n_problems - len(falls_short)} of {n_problems} problems'
     but = ', '.join(f'{name} {words}' for name, words in falls_short.items())
     return Verdict(what, to_reach, f'{held}; not on: {but}' if but else held, not falls_short)

@@ -8,13 +8,14 @@ from benchmarks.race import Standing
 from benchmarks.sections import Bench, milliseconds, on_all, ratio, Section, shortfalls, table
 from benchmarks.standings import Summary, summary
 
-#: A wavefront's time on a small map is no time to optimize in [s].
+#: Least time to optimize in [s], where a wavefront is faster than that.
 LEAST_TIME = 1e-3
+#: Targets: length over the best known, median and 95th percentile.
 MEDIAN, P95 = 1.01, 1.05
 
 
 class Lengths(NamedTuple):
-    """Results of ours, optimized in the time of a wavefront, and of the wavefront."""
+    """Summaries on one problem: ours, optimized in a wavefront's time, and the wavefront."""
 
     problem: str
     ours: Summary

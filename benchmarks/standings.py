@@ -62,7 +62,7 @@ def summary(entry: Entry, standing: Standing) -> Summary:
 
 
 def quantile(values: Floats, part: float) -> float:
-    """Smallest of the values that ``part`` of them do not exceed; nan for none."""
+    """Return the least value that a fraction ``part`` of values do not exceed; nan for none."""
     if len(values) == 0:
         return np.nan
     return float(np.quantile(values, part, method='inverted_cdf'))
@@ -72,9 +72,9 @@ def improvements(entry: Entry, standing: Standing) -> list[tuple[Floats, Floats]
     """
     Return times (k, n) [s] and length ratios (k, n) of each request, as they improve.
 
-    One that can use a given time is asked anew with more and more of it; k is 1. The others begin
-    again with another seed and keep the shortest path: the time is that of all runs so far, and
-    each of the k runs of the request is once the first.
+    A competitor that can use a given time runs again with more and more of it; k is 1. The others
+    run again with another seed and keep the shortest path: the time is that of all runs so far,
+    and each of the k runs of the request is the first once.
     """
     found = []
     for request, best in enumerate(standing.best):
@@ -107,8 +107,8 @@ def course(entry: Entry, standing: Standing) -> tuple[Floats, Floats]:
     """
     Return the medians of times (k,) [s] and length ratios (k,) at each step.
 
-    A step is one more run, or more time for one that can use it; it counts while half of the
-    requests get there.
+    A step is one more run, or more time for a competitor that can use it. There are as many as
+    half of the requests have.
     """
     found = improvements(entry, standing)
     lengths = [times.shape[1] for times, _ in found]

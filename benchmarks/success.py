@@ -14,6 +14,7 @@ from hnr_planner.core import plan
 from hnr_planner.experiments.requests import far_pairs
 import numpy as np
 
+#: Seeds for each pair.
 SEEDS = 50
 
 

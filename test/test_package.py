@@ -1,4 +1,4 @@
-"""The package around the code: what is declared, what may import what, what gets installed."""
+"""The package: its metadata, the layers of imports, and what is installed."""
 
 import ast
 from collections.abc import Iterator
@@ -24,7 +24,7 @@ MODULES = {
 }
 
 #: The layers, the lowest first: a module imports from its own layer and those below. The first
-#: name that a module's name begins with is its layer. CONTRIBUTING.md says what each one holds.
+#: name that a module's name begins with is its layer. CONTRIBUTING.md describes them.
 LAYERS = (
     'hnr_planner.core.errors',
     'hnr_planner.core.cancellation',
@@ -152,7 +152,7 @@ def manifest() -> ElementTree.Element:
     return ElementTree.parse(ROOT / 'package.xml').getroot()
 
 
-# -- what is declared
+# -- metadata
 
 
 def test_both_manifests_agree(distribution: Any, manifest: ElementTree.Element) -> None:
@@ -235,7 +235,7 @@ def test_data_files_hold_what_ros_looks_for(distribution: Any) -> None:
     assert all(os.access(path, os.X_OK) for path in ROOT.glob('scripts/*'))
 
 
-# -- what may import what
+# -- layers
 
 
 def test_imports_run_downwards() -> None:
@@ -262,7 +262,7 @@ def test_contributing_has_the_same_layers() -> None:
     assert [f'hnr_planner.{name}' for name in modules] == list(LAYERS[::-1])
 
 
-def test_maps_know_nothing_of_the_core_but_its_errors() -> None:
+def test_maps_import_nothing_of_the_core_but_its_errors() -> None:
     names = {name for path in PACKAGE.glob('maps/**/*.py') for name in imports(path)}
     assert {name for name in names if name.startswith('hnr_planner.core')} <= {
         'hnr_planner.core.errors'
@@ -277,8 +277,8 @@ def test_layers_below_ros_import_no_ros(name: str) -> None:
         assert not [library for library in libraries(source(module)) if is_ros(library)], module
 
 
-@pytest.mark.parametrize('part', ['core', 'maps', 'server'])
-def test_it_runs_where_there_is_no_ros(part: str) -> None:
+@pytest.mark.parametrize('layer_name', ['core', 'maps', 'server'])
+def test_it_runs_where_there_is_no_ros(layer_name: str) -> None:
     program = f"""
 import importlib, sys
 sys.path.insert(0, {str(ROOT)!r})
@@ -297,7 +297,7 @@ for name in ('rclpy', 'nav_msgs.msg'):
         continue
     sys.exit(f'{{name}} could be imported: this program proves nothing')
 
-for name in {sorted(name for name in MODULES if name.startswith(f'hnr_planner.{part}'))!r}:
+for name in {sorted(name for name in MODULES if name.startswith(f'hnr_planner.{layer_name}'))!r}:
     importlib.import_module(name)
 
 from hnr_planner import GridSpace, plan
@@ -319,7 +319,7 @@ def test_launch_file_describes_its_nodes() -> None:
     assert names == {'map_node', 'planner_node', 'rviz2'}
 
 
-# -- what gets installed
+# -- installation
 
 
 @pytest.fixture

@@ -1,4 +1,4 @@
-"""The competitors: ours, OMPL's, grid search. Each answers requests and measures its time."""
+"""The competitors: ours, OMPL's, grid search. Each answers requests and measures its own time."""
 
 from benchmarks.competitors.competitor import (
     Competitor,

@@ -1,4 +1,4 @@
-"""Define what a competitor is."""
+"""Types of the comparison: competitors, their solvers and their runs."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 from benchmarks.problems import Floats, Problem
 
+#: Time limit of one run [s].
 TIME_LIMIT = 1.0
 
 
@@ -17,37 +18,37 @@ class Missing(Exception):
 
 
 class Run(NamedTuple):
-    """Time [s], and the path (m, 2) [m], (0, 2) for none."""
+    """Answer to one request: time [s], and the path (m, 2) [m], (0, 2) for none."""
 
     seconds: float
     path: Floats
 
 
-#: Answers requests (k, 2, 2) [m], the first with this seed, the next with the one after it.
+#: Function that answers requests (k, 2, 2) [m]: request i with the given seed plus i.
 Solver = Callable[[Floats, int], list[Run]]
-#: Gets ready for a problem.
+#: Function that prepares a problem, and yields the solver for it.
 SolverOf = Callable[[Problem], AbstractContextManager[Solver]]
 
 
 @dataclass(frozen=True)
 class Competitor:
     """
-    One participant of the comparison.
+    A planner in the comparison.
 
     Attributes
     ----------
     name : str
-        As its field calls it.
+        Name of the algorithm, as in the literature.
     group : str
-        Whose it is.
+        Origin of the implementation: 'ours', a build of OMPL, or 'grid'.
     aim : str
-        What it is after: the 'first' path, or a 'short' one.
+        What it searches for: the 'first' path, or a 'short' one.
     solver : SolverOf or None
-        Runs once; None for one that always wants a time.
+        Solver that ends by itself; None for a planner that always uses a given time.
     within : callable or None
-        The same with so many seconds to use; None for one that ends when it is done.
+        Returns a solver that uses a given time [s]; None for a planner that ends by itself.
     runs_least : int
-        Runs that a full race gives it on every problem.
+        Least number of runs on every problem in a full benchmark.
 
     """
 

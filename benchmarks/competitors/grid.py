@@ -12,7 +12,7 @@ from benchmarks.problems import Floats, Problem
 from hnr_planner.experiments.grid_search import a_star, pull_string, theta_star, wavefront
 import numpy as np
 
-#: Finds a path (m, 2) in cells on a compiled grid.
+#: Function that finds a path (m, 2) [cells] on a compiled grid.
 Search = Callable[[Any, Floats, Floats], Floats]
 
 

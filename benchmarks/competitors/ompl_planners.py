@@ -17,6 +17,7 @@ from benchmarks.competitors.competitor import (
 )
 from benchmarks.problems import Floats, Problem
 
+#: Names of the two builds in the report.
 NATIVE, WHEEL = 'OMPL', 'OMPL PyPI'
 SIMPLIFY = '+simplify'
 

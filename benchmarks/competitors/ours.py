@@ -15,9 +15,9 @@ from hnr_planner.core import plan
 from hnr_planner.experiments.grid_search import wavefront
 import numpy as np
 
-#: A wavefront's time on a small map is no time to optimize in [s].
+#: Least time to optimize in [s], where a wavefront is faster than that.
 LEAST_TIME = 1e-3
-#: Runs that tell how long a wavefront takes, and the part of its time that is used.
+#: Runs by which the time of a wavefront is measured, and the fraction of that time to use.
 CALIBRATION, USED = 40, 0.9
 
 
@@ -58,7 +58,7 @@ def _optimized_for(seconds: float) -> SolverOf:
 
 @contextmanager
 def _optimized(problem: Problem) -> Iterator[Solver]:
-    """Look for a shorter path until a wavefront would have been ready."""
+    """Look for a shorter path for as long as a wavefront takes."""
     with search_with(wavefront)(problem) as waves:
         requests = np.resize(problem.requests, (CALIBRATION, 2, 2))
         allowed = median(run.seconds for run in waves(requests, 0))

@@ -82,7 +82,7 @@ def wheel_version() -> str:
 
 
 class Session:
-    """A running program, which is sent each new grid."""
+    """A running program that solves requests, on one grid after another."""
 
     def __init__(self, command: list[str]) -> None:
         self._folder = tempfile.TemporaryDirectory()

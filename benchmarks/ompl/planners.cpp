@@ -1,4 +1,4 @@
-// OMPL on occupancy grids: told one thing a line, it answers each request with a line.
+// OMPL on occupancy grids: reads commands, one a line, and answers each request with a line.
 //
 //   planners SEED
 //   grid FILE               int32 rows, int32 columns, then a byte for each cell, row by row, not 0

@@ -28,7 +28,7 @@ SIMPLIFY = '+simplify'
 
 
 class GridTraversal(base.MotionValidator):
-    """Exact check of motions."""
+    """Motion validator that traverses the cells of a grid exactly."""
 
     def __init__(self, si: base.SpaceInformation, grid: GridData) -> None:
         super().__init__(si)
@@ -50,7 +50,7 @@ def _is_free(free_distance, labels, x, y):
 
 
 class Course:
-    """A grid, and OMPL set up on it."""
+    """A grid, and OMPL's setup for planning on it."""
 
     def __init__(self, file: str) -> None:
         blocked = read_grid(file)

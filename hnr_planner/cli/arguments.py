@@ -50,7 +50,7 @@ class CommandParser(argparse.ArgumentParser):
     """An argument parser that reports an error in one line and keeps the layout of its epilog."""
 
     def __init__(self, **settings: object) -> None:
-        """Take what ``argparse.ArgumentParser`` takes."""
+        """Make a parser as ``argparse.ArgumentParser`` does; it takes no abbreviated options."""
         settings.setdefault('formatter_class', argparse.RawDescriptionHelpFormatter)
         settings['allow_abbrev'] = False
         super().__init__(**settings)  # type: ignore[arg-type]

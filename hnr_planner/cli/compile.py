@@ -17,7 +17,8 @@ example:
   %(prog)s
 
 Without it nothing waits either: requests run interpreted until a background process has compiled
-what they need, and later starts load it. With it the first requests are as fast as all others.
+what they need, and later starts load it. That process ends with the one that started it, so that
+commands, which are short, stay slow for a while. With it the first requests are as fast as others.
 The machine code lies in the user's cache folder (~/.cache/hnr_planner), or where NUMBA_CACHE_DIR
 or XDG_CACHE_HOME point. It is valid for this machine's kind of processor and for this version:
 compile on the robot, or in an image that runs on the same kind of processor.
@@ -62,6 +63,17 @@ def run(arguments: argparse.Namespace) -> int:
     seconds = time.monotonic() - began
     print(f'{progress.n_total} kernels ready, {n_compiled} of them compiled now, {seconds:.0f} s')
     return 0
+
+
+def note_if_interpreted() -> None:
+    """Print a line on stderr where machine code was missing and has not been compiled yet."""
+    compilation = sys.modules.get('hnr_planner.core.kernels.compilation')
+    if compilation is not None and compilation.status().pending:
+        print(
+            'note: this ran interpreted, many times slower than machine code; '
+            '`python3 -m hnr_planner compile` compiles all of it once, in some minutes',
+            file=sys.stderr,
+        )
 
 
 def _is_temporary(folder: Path) -> bool:

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import argparse
+import os
 from pathlib import Path
 import sys
 import webbrowser
 
-from hnr_planner.cli.arguments import add_command, count
+from hnr_planner.cli.arguments import add_command, count, listing
 from hnr_planner.cli.extras import require_extra
+from hnr_planner.experiments.registry import EXPERIMENTS, load, NAMES
 
-#: Names of the experiments; literal, so that ``--help`` imports none of them. A test compares.
-NAMES = ('spiral', 'clouds', 'corridor', 'safety', 'mixing', 'theory')
 EPILOG = """\
 Rows are saved as they are measured: an interrupted run resumes, and a longer run continues a
 shorter one. A tenth of the runs of docs/ is enough for a first look. When HNR_MAPS names a folder,
@@ -20,6 +20,9 @@ the experiment safety includes its map_server maps.
 examples:
   %(prog)s spiral --runs 50 --show
   %(prog)s --out figures
+
+experiments:
+{experiments}
 
 Exit code 0: done. 2: the arguments are not usable, or the folder holds results of other sources.
 """
@@ -33,13 +36,13 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
         run,
         summary="measure the paper's claims and draw figures",
         description='Run experiments: NAME.csv, NAME.svg and NAME.md (tables) in a folder.',
-        epilog=EPILOG,
+        epilog=EPILOG.format(experiments=listing(EXPERIMENTS.values())),
     )
     parser.add_argument(
         'names',
         nargs='*',
         metavar='NAME',
-        help=f'{", ".join(NAMES)}; default all of them',
+        help='one of the experiments below; default all of them',
     )
     parser.add_argument(
         '--runs',
@@ -67,15 +70,19 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Run the experiments, print their tables, and return the exit code."""
+    from hnr_planner.core.kernels import modes
+
     require_extra('experiments', 'an experiment')
+    # Interpreted, an experiment would take days: all its processes wait for machine code.
+    modes.set_mode(os.environ.setdefault(modes.VARIABLE, modes.Mode.COMPILED.value))
     for name in arguments.names or NAMES:
         _conduct(name, arguments)
     return 0
 
 
 def _conduct(name: str, arguments: argparse.Namespace) -> None:
+    """Run one experiment, print its tables, and show its figure if asked."""
     from hnr_planner.core.checks import check_choice
-    from hnr_planner.experiments import load
     from hnr_planner.experiments.conduct import conduct
 
     experiment = load(check_choice('experiment', name, NAMES))

@@ -70,6 +70,7 @@ def _run(arguments: Namespace) -> int:
         with _warnings_as_lines():
             code: int = arguments.run(arguments)
         sys.stdout.flush()
+        compile_command.note_if_interpreted()
         return code
     except BrokenPipeError:
         raise

@@ -203,6 +203,7 @@ def _json(result: PlanResult) -> str:
             'iterations': result.iterations,
             'elapsed': result.elapsed,
             'length': result.length if math.isfinite(result.length) else None,
+            'lower_bound': result.lower_bound if math.isfinite(result.lower_bound) else None,
             'path': result.path.tolist(),
             'paths': [path.tolist() for path in result.paths],
             'goal_offset': result.goal_offset,

@@ -1,4 +1,4 @@
-"""The command ``sample``: uniform points of the free part of a map."""
+"""The command ``sample``: uniform points of the free space of a map."""
 
 from __future__ import annotations
 
@@ -32,11 +32,11 @@ EPILOG = """\
 example:
   %(prog)s office.yaml --n 1000 --csv points.csv --plot points.png
 
-The points are the states of a random walk. Without --start they cover all of the free space, and
-every point is uniform there: a walk never passes from one connected part to another, so each part
-has a walk of its own, which starts at a uniform point of it, and every point is drawn from the
-walk of a part chosen with probability proportional to its area. With --start there is one walk, in
-the part that contains the start, and its first points are still near the start.
+The points are the states of a random walk. Without --start every point is uniform on all of the
+free space: a walk never leaves its connected component, so each component has a walk of its own,
+which starts at a uniform point of it, and every point is drawn from the walk of a component chosen
+with probability proportional to its area. With --start there is one walk, in the component of the
+start, and its first points are still near the start.
 
 Points of one walk are correlated. --thin K takes K steps of the walk for each point, which lowers
 the correlation. --chains K draws N points K times, independently; the list then has a third
@@ -55,8 +55,8 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
         commands,
         'sample',
         run,
-        summary='draw uniform points of the free part of a map',
-        description='Draw uniform points of the free part of a map, by a random walk.',
+        summary='draw uniform points of the free space of a map',
+        description='Draw uniform points of the free space of a map, by a random walk.',
         epilog=EPILOG,
     )
     add_map_arguments(parser)

@@ -56,4 +56,6 @@ from hnr_planner.core.trajectories.plan_trajectory import plan_trajectory as pla
 from hnr_planner.core.trajectories.registry import KINODYNAMIC_ALGORITHMS as KINODYNAMIC_ALGORITHMS
 from hnr_planner.core.trajectories.registry import KINODYNAMIC_PLANNERS as KINODYNAMIC_PLANNERS
 from hnr_planner.core.trajectories.result import TrajectoryResult as TrajectoryResult
+from hnr_planner.core.warming import compile_all as compile_all
+from hnr_planner.core.warming import compile_in_background as compile_in_background
 from hnr_planner.core.warming import warm_up as warm_up

@@ -15,7 +15,7 @@ class Answer:
     """
     Response and messages of one request.
 
-    Parameters
+    Attributes
     ----------
     outcome : str
         Name of the outcome, such as SOLVED.
@@ -52,7 +52,7 @@ class Answer:
 
     @classmethod
     def read(cls, folder: Path, algorithm: str) -> Answer:
-        """Read an answer that ``write`` wrote."""
+        """Read the answer of an algorithm from a folder."""
         with np.load(folder / f'{algorithm}.npz') as file:
             arrays = {name: file[name] for name in ('response', 'path', 'samples', 'parents')}
             return cls(**json.loads(str(file['words'])), **arrays)

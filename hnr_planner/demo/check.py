@@ -27,7 +27,7 @@ class Check:
     """
     Result of the check of a path.
 
-    Parameters
+    Attributes
     ----------
     problems : tuple of str
         Descriptions of the faults; empty for a path that is free.

@@ -36,7 +36,7 @@ POINT_FIELDS = {5: '<i4', 6: '<u4', 7: '<f4', 8: '<f8'}
 
 
 class LateError(Exception):
-    """Something did not arrive in time; the message names it."""
+    """A message, a response or a service did not arrive in time; the text names it."""
 
 
 class Client(Node):

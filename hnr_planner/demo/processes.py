@@ -47,7 +47,7 @@ class Screen:
         return time.monotonic() - self._last
 
     def say(self, who: str, line: str) -> None:
-        """Print a line."""
+        """Print a line of the process ``who``."""
         with self._lock:
             self._last = time.monotonic()
             print(f'{self._last - self._began:6.1f} s  {who:<8} {line}', flush=True)
@@ -135,7 +135,7 @@ class Processes:
 
     def wait_for(self, name: str, within: float, waiting: str) -> None:
         """
-        Wait until a process has ended with code 0, and print what for when nothing else is.
+        Wait until a process has ended with code 0; print ``waiting`` while no other line comes.
 
         Raises
         ------

@@ -31,7 +31,7 @@ class SceneError(HnrError, ValueError):
 
 @dataclass(frozen=True)
 class Scene:
-    """A request on a map; ``space`` is the free space of the robot, points are in metres."""
+    """Scene of the demo: a map file, the free space of the robot, start and goal [m]."""
 
     file: Path
     occupancy: OccupancyMap

@@ -13,6 +13,7 @@ from matplotlib.colors import LinearSegmentedColormap
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+#: Text, faint text, frames, and cells that are unknown.
 INK = '#22262B'
 FAINT_INK = '#6B737C'
 FRAME = '#B4BAC1'

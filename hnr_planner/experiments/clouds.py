@@ -21,6 +21,7 @@ from matplotlib.figure import Figure
 import numpy as np
 from numpy.typing import NDArray
 
+#: Widths of the arms [m], the one that is drawn, and the planners.
 WIDTHS = (0.8, 1.2, 1.6, 2.0)
 SHOWN_WIDTH = 1.2
 PLANNERS = ('hit_and_run', 'rrt')
@@ -153,13 +154,13 @@ def _searched(corridor: Straightened, result: PlanResult) -> dict[str, float]:
 def _arrivals(way: NDArray) -> NDArray[np.float64]:
     """Return the number of samples (N_PARTS,) before the first one in each section of the way."""
     farthest = np.maximum.accumulate(way)
-    parts = np.linspace(0.0, 1.0, N_PARTS + 1)[1:]
+    fractions = np.linspace(0.0, 1.0, N_PARTS + 1)[1:]
     # The search ends in the goal's region, which begins before the goal.
-    return np.minimum(np.searchsorted(farthest, parts), len(way) - 1).astype(float)
+    return np.minimum(np.searchsorted(farthest, fractions), len(way) - 1).astype(float)
 
 
 def _way(corridor: Straightened, points: NDArray) -> NDArray[np.float64]:
-    """Return the fraction of the way (k,) of points; a point on a wall takes a cell beside it."""
+    """Return the fraction of the way (k,) at points; on a wall, that of a free cell beside it."""
     way = corridor.way[_cells(corridor.space, points)]
     if not np.isfinite(way).all():
         for offset in (-1e-6, 1e-6):
@@ -202,7 +203,7 @@ def _nearness(corridor: Straightened, points: NDArray) -> dict[str, float]:
 
 
 def _in_layers(space: GridSpace, width: float, points: NDArray) -> NDArray[np.float64]:
-    """Return the fraction of points in each layer; corners of the corridor count as middle."""
+    """Return the fraction of points in each layer; corners of the corridor count as the middle."""
     depth = space.clearance(points) / (width / 2.0)
     layers = np.minimum((depth * N_LAYERS).astype(int), N_LAYERS - 1)
     return np.bincount(layers, minlength=N_LAYERS) / len(points)

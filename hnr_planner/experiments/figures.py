@@ -30,6 +30,7 @@ class Look(NamedTuple):
     mark: str
 
 
+#: Label, colour and marker of each algorithm.
 LOOKS = {
     'hit_and_run': Look('Hit-and-Run', '#0072B2', 'o'),
     'rrt': Look('RRT', '#D55E00', 's'),
@@ -128,7 +129,7 @@ def sign(figure: Figure, text: str) -> None:
 
 
 def save(figure: Figure, file: Path) -> None:
-    """Write a figure: the same bytes for the same results, and text as text."""
+    """Write a figure; the same results give the same bytes, and text stays text in an SVG file."""
     with rc_context({'svg.hashsalt': 'hnr_planner', 'svg.fonttype': 'none'}):
         figure.savefig(
             file, dpi=200, facecolor='white', metadata={'Date': None}, bbox_inches='tight'

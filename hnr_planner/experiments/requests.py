@@ -11,7 +11,7 @@ MIN_DISTANCE = 0.4
 
 
 def far_pairs(space: GridSpace, n_pairs: int, seed: int) -> NDArray[np.float64]:
-    """Draw starts and goals (n_pairs, 2, 2) [m]: cell centres in the largest component."""
+    """Draw distant starts and goals (n_pairs, 2, 2) [m]: cell centres in the largest component."""
     rng = np.random.default_rng(seed)
     rows, columns = np.nonzero(space.largest_component())
     diagonal = np.hypot(np.ptp(rows), np.ptp(columns))

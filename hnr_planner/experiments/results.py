@@ -1,9 +1,9 @@
 """
 The results of an experiment: a CSV file that grows, and the table that is read from it.
 
-The rows of the file follow one endless list: every case with seed 0, every case with seed 1, and
-so on. So an interrupted run resumes where the file ends, a longer run continues a shorter one, and
-all cases have the same number of rows, give or take one.
+The rows have a fixed order: every case with seed 0, every case with seed 1, and so on. So an
+interrupted run resumes where the file ends, a longer run continues a shorter one, and the numbers
+of rows of the cases differ by at most one.
 """
 
 from __future__ import annotations
@@ -56,7 +56,7 @@ class Results:
         return len(next(iter(self.columns.values()), ()))
 
     def __getitem__(self, column: str) -> NDArray[Any]:
-        """Return a column."""
+        """Return a column by its name."""
         return self.columns[column]
 
     def where(self, **values: object) -> Results:
@@ -153,7 +153,7 @@ class ResultsFile:
         )
 
     def _check_note(self) -> dict[str, str]:
-        """Refuse results of other sources of the core, which might differ."""
+        """Refuse results that were computed with other sources of the core."""
         note: dict[str, str] = json.loads(self._note.read_text(encoding='utf-8'))
         now = made_with()
         if note['core'] != now['core']:

@@ -17,4 +17,4 @@ class MapFileError(HnrError, ValueError):
 
 
 class MapFileWarning(UserWarning):
-    """A map file was read, but says something twice: the message names the file and the key."""
+    """A key of a map file occurs repeatedly; the message names the file and the key."""

@@ -1,4 +1,4 @@
-"""Recognise what a file is by its first bytes, whatever its name says."""
+"""Recognise the kind of a file by its first bytes, not by its name."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ import re
 #: Number of bytes of a file that ``kind_of`` needs.
 HEAD = 512
 
+#: What a file is, with a pattern of its first bytes.
 _KINDS = {
     'PNG image': rb'\x89PNG\r\n\x1a\n',
     'PGM image': rb'P[25][\s#]',
@@ -40,7 +41,7 @@ _PATTERNS = {kind: re.compile(pattern, re.DOTALL) for kind, pattern in _KINDS.it
 
 
 def kind_of(head: bytes) -> str | None:
-    """Return what a file is whose first bytes are given, such as ``PNG image``, or None."""
+    """Return the kind of a file by its first bytes, such as ``PNG image``; None if unknown."""
     return next((kind for kind, pattern in _PATTERNS.items() if pattern.match(head)), None)
 
 

@@ -13,17 +13,20 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+#: Sides of the building, and thickness of its walls [m].
 WIDTH, HEIGHT = 40.0, 25.0
 OUTER_WALL, INNER_WALL = 0.3, 0.15
-CELL = 0.025  # of the material grid, finer than the map that a survey draws of it
+#: Side of a cell of the material grid [m]; it is finer than the map that a survey draws of it.
+CELL = 0.025
+#: Materials.
 AIR, SOLID, GLASS = 0, 1, 2
-
+#: Least and largest width of a door [m], and depth of the area that stays free on both sides [m].
 DOOR_WIDTHS = (0.9, 1.2)
-APRON = 1.1  # what stays free in front of a door
+APRON = 1.1
 
 
 class Rect(NamedTuple):
-    """An upright rectangle."""
+    """A rectangle along the axes [m]."""
 
     left: float
     bottom: float
@@ -140,7 +143,7 @@ def _core(rng: np.random.Generator, walls: Rect) -> list[Room]:
 def _split(
     rng: np.random.Generator, start: float, stop: float, least: float, most: float
 ) -> list[tuple[float, float]]:
-    """Cut an interval into rooms at least ``least`` wide, and ``most`` wide if that can be."""
+    """Cut an interval into rooms of widths from ``least`` to ``most``, the last perhaps wider."""
     pieces = []
     while stop - start > max(most, 2 * least + INNER_WALL):
         longest = min(most, stop - start - INNER_WALL - least)
@@ -151,7 +154,7 @@ def _split(
 
 
 def _doorways(rng: np.random.Generator, corridors: list[Room], rooms: list[Room]) -> list[Rect]:
-    """Return the openings: every room to every corridor that it lies at, and a few between."""
+    """Return doorways from each room to a corridor (a hall: to each), and a few between rooms."""
     doorways = []
     for room in rooms:
         found = [_doorway(rng, room.rect, corridor.rect) for corridor in corridors]
@@ -181,7 +184,7 @@ def _doorway(rng: np.random.Generator, room: Rect, other: Rect) -> Rect | None:
 
 
 def _apron(doorway: Rect) -> Rect:
-    """Return the area that furniture leaves free: the door's width, on both sides of the wall."""
+    """Return the area around a doorway that furniture leaves free, on both sides of the wall."""
     left, bottom, right, top = doorway
     if right - left > top - bottom:
         return Rect(left - 0.1, bottom - APRON, right + 0.1, top + APRON)
@@ -204,14 +207,14 @@ def _leaf(rng: np.random.Generator, doorway: Rect, corridors: list[Room]) -> Rec
 
 
 def _cut_corner(material: NDArray[np.uint8], room: Rect, length: float) -> None:
-    """Make the upper right corner of a room slanting."""
+    """Cut off the upper right corner of a room by a slanting wall."""
     rows, columns = np.ogrid[: material.shape[0], : material.shape[1]]
     missing = room.right + room.top - (rows + columns + 1) * CELL
     material[(missing < length) & (columns * CELL > room.left)] = SOLID
 
 
 def _windows(rng: np.random.Generator, rooms: list[Room]) -> list[Rect]:
-    """Return panes in the outer walls of the south and north fronts, some rooms have none."""
+    """Return panes of glass in the outer walls of the south and north; some rooms have none."""
     panes = []
     for room in rooms:
         left, bottom, right, top = room.rect

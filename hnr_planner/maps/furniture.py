@@ -1,8 +1,8 @@
 """
 Furnish a floor plan: desks, chairs, shelves, tables, columns and clutter.
 
-No two groups of things stand closer than GAP, a group stands at a wall or at least GAP from it,
-and the doors' aprons stay free: so whatever is placed, no room is cut in two.
+No two groups of furniture are closer than ``GAP``, a group is at a wall or at least ``GAP`` from
+it, and the areas around doors stay free: so no room is ever cut in two.
 """
 
 from __future__ import annotations
@@ -21,13 +21,15 @@ from hnr_planner.maps.floor_plan import (
 )
 import numpy as np
 
-GAP = 0.7  # [m]
-DOOR_GAP = 0.3  # beyond the apron, which is free already [m]
-LEG = 0.035  # radius of what furniture stands on [m]
+#: Least distance between groups [m], and from the free area around a door [m].
+GAP = 0.7
+DOOR_GAP = 0.3
+#: Radius of a leg [m].
+LEG = 0.035
 
 
 class Disc(NamedTuple):
-    """A round thing."""
+    """A round object [m]."""
 
     x: float
     y: float
@@ -35,18 +37,20 @@ class Disc(NamedTuple):
 
 
 class Group(NamedTuple):
-    """Things that stand together, and the rectangle around them."""
+    """Objects that stand together, and the rectangle around them."""
 
     outline: Rect
     things: tuple[Rect | Disc, ...]
 
 
-Maker = Callable[[np.random.Generator], Group]  # of a group with its back along y = 0
+#: Function that makes a group with its back along y = 0.
+Maker = Callable[[np.random.Generator], Group]
+#: Function from a point to a point.
 Placer = Callable[[float, float], tuple[float, float]]
 
 
 def furnish(rng: np.random.Generator, plan: FloorPlan) -> None:
-    """Put furniture into every room of the plan, in its material."""
+    """Draw furniture into the material of the plan, in every room."""
     placed = [apron.grown(DOOR_GAP - GAP) for apron in plan.aprons]
     for room in plan.rooms:
         for group in _proposals(rng, room):
@@ -151,7 +155,7 @@ def _island(rng: np.random.Generator) -> Group:
 
 
 def _clutter(rng: np.random.Generator) -> Group:
-    """Return a plant, a bin or a chair that somebody left."""
+    """Return one small object: a plant, a bin or a chair."""
     radius = 0.03 + 0.2 * rng.random() ** 3
     return Group(Rect(0, 0, 2 * radius, 2 * radius), (Disc(radius, radius, radius),))
 
@@ -171,7 +175,7 @@ def _small_table(rng: np.random.Generator) -> Group:
 
 
 def _table(length: float, depth: float) -> Group:
-    """Return a table along the x axis, which a laser sees through, and chairs on both sides."""
+    """Return the legs of a table along the x axis, and chairs on both sides."""
     legs = [Disc(x, y, 0.06) for x in (0.2, length / 2, length - 0.2) for y in (0.6, depth + 0.3)]
     chairs = [
         part
@@ -214,7 +218,7 @@ def _at_wall(rng: np.random.Generator, room: Rect, make: Maker) -> Group:
 
 
 def _slide(rng: np.random.Generator, space: float) -> float:
-    """Return a place along a wall; what would stand close to a corner moves into it."""
+    """Return a position along a wall; one close to a corner is moved into the corner."""
     place = rng.random() * space
     if place < GAP:
         return 0.0

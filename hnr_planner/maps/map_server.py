@@ -7,7 +7,7 @@ With v the grey value of a pixel (0..255), n = v / 255 and occ = n if ``negate``
 trinary  occ <= free_thresh: 0; else occ >= occupied_thresh: 100; else -1
 scale    the same ends, and round(100 (occ - free_thresh) / (occupied_thresh - free_thresh))
          between them
-raw      v where it is 0..100, else -1, whatever ``negate`` says
+raw      v where it is 0..100, else -1; ``negate`` has no effect
 =======  ====================================================================================
 
 In trinary and scale a pixel that is not fully opaque is -1. The image's last row is the grid's
@@ -95,7 +95,7 @@ def load_map_server(path: Path) -> OccupancyMap:
 
 
 def _hint(path: Path, image: Path) -> str:
-    """Return which file beside the YAML file may be meant by a name that leads nowhere."""
+    """Return a hint at a file beside the YAML file, where a wrong image name may mean it."""
     name = re.split(r'[\\/]', str(image))[-1]
     beside = [file.name for file in path.parent.glob('*') if file.is_file()]
     similar = [other for other in beside if other.casefold() == name.casefold()]
@@ -150,7 +150,7 @@ def _palette_image(data: NDArray[np.int8]) -> Image.Image:
 
 
 def occupancy_of(pixels: Pixels, header: MapHeader) -> NDArray[np.int8]:
-    """Return what each pixel means, (rows, cols) from the top of the image."""
+    """Return the occupancy of each pixel, (rows, cols) from the top of the image."""
     data = _meanings(header)[pixels.thirds]
     if header.mode != 'raw':
         data[pixels.transparent] = UNKNOWN
@@ -201,7 +201,7 @@ def read_header(path: Path) -> MapHeader:
 
 
 def _read_mapping(path: Path) -> Mapping:
-    """Return the keys and values of a YAML file, which has to be one."""
+    """Return the keys and values of a YAML file, or raise MapFileError."""
     try:
         with path.open('rb') as file:
             head = file.read(HEAD)
@@ -232,7 +232,7 @@ def _refuse_other_files(path: Path, head: bytes) -> None:
 
 
 class _Fields:
-    """The keys of one YAML file, each read with the rule that its value has to obey."""
+    """Values of one YAML file, each checked against its rule."""
 
     def __init__(self, path: Path, mapping: Mapping) -> None:
         self._path = path

@@ -1,4 +1,4 @@
-"""How much memory this process may still take."""
+"""Memory that this process can still allocate."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ GIB = 2**30
 
 def available_memory() -> float:
     """
-    Return how many bytes can be allocated; inf where the system does not say.
+    Return the number of bytes that can be allocated; inf where the system has no figure.
 
     It is the least of what the machine has free and what two limits leave: that of the control
     group (a container) and that of the address space (``ulimit -v``).

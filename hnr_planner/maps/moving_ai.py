@@ -12,7 +12,7 @@ W        water, passable from water but not from ground
 T        trees, not passable
 =======  ==========================================================================
 
-A cell of an occupancy map is free or occupied for everybody, so ground and swamp are free here,
+A cell of an occupancy map is free or occupied for every robot, so ground and swamp are free,
 and water is occupied, like all else: a robot on the ground can never enter it.
 
 The array's row is the file's row: the file's first line is row 0, y grows downwards in the file

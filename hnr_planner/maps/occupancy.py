@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+#: Values of cells, in percent; -1 has no meaning as a chance.
 FREE, OCCUPIED, UNKNOWN = 0, 100, -1
 
 

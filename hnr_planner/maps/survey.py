@@ -1,11 +1,11 @@
 """
 Simulate the survey of a floor plan by a laser scanner.
 
-A scanner stands at many places of every room, each known up to a small error. Its rays stop at
-the first solid thing, with noise in range, and at panes of glass almost always. A cell is
-occupied when enough of the rays that came to it ended there, free when rays went through, unknown
-when none came: so walls are ragged, the insides of things and the outdoors stay unknown, and
-windows leave streaks.
+A scanner stands at many positions in every room, each known up to a small error. Its rays stop
+at the first solid object, with noise in range, and almost always at panes of glass. A cell is
+occupied when enough of the rays that reached it ended there, free when rays went through it, and
+unknown when none reached it. So walls are ragged, the inside of objects and the outdoors stay
+unknown, and windows leave streaks of free cells.
 """
 
 from __future__ import annotations
@@ -15,14 +15,21 @@ from hnr_planner.maps.occupancy import FREE, OccupancyMap, OCCUPIED, UNKNOWN
 import numpy as np
 from numpy.typing import NDArray
 
+#: Rays of a scan, and their range [m].
 RAYS = 720
-RANGE = 8.0  # [m]
-NOISE = 0.04  # largest error in range [m]
-DRIFT = (0.025, 0.025, 0.004)  # largest error in the scanner's believed pose [m, m, rad]
-SEES_GLASS = 0.97  # share of the rays that a pane stops
-HIT_SHARE = 0.25  # of a cell's rays that have to end in it to make it occupied
-SPACING = 1.9  # between two places of the scanner [m]
-ROOM_TO_STAND = 0.4  # half of the side of the square that the scanner needs [m]
+RANGE = 8.0
+#: Largest error in range [m].
+NOISE = 0.04
+#: Largest error in the scanner's estimated pose [m, m, rad].
+DRIFT = (0.025, 0.025, 0.004)
+#: Fraction of the rays that a pane of glass stops.
+SEES_GLASS = 0.97
+#: Fraction of a cell's rays that have to end in it to make it occupied.
+HIT_SHARE = 0.25
+#: Distance between two positions of the scanner [m].
+SPACING = 1.9
+#: Half of the side of the square that the scanner needs [m].
+ROOM_TO_STAND = 0.4
 
 
 def survey(

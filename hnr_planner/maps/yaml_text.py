@@ -155,7 +155,7 @@ def _value(node: Any, depth: int = 1) -> Value:
 
 
 def _text(raw: str) -> str:
-    """Return parsed text with the hidden bytes as they were; what is not UTF-8 is a surrogate."""
+    """Return parsed text with the hidden bytes restored; bytes not UTF-8 become surrogates."""
     parts = (
         bytes([_SHOWN[ord(char)]]) if ord(char) in _SHOWN else char.encode('utf-8', 'replace')
         for char in raw

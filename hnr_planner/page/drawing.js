@@ -1,4 +1,4 @@
-// What is on the canvas: the map, the searches as far as they are, and the paths.
+// Draw the canvas: the map, the searches up to the time shown, and the paths.
 
 const MANY = 4000;
 const LAYERS = {samples: true, tree: true, chord: true, detours: true, path: true};

@@ -1,4 +1,4 @@
-// What can be switched and pressed, and how the page begins.
+// Controls of the page (buttons, layers, keys), and its start.
 
 const LAYER_NAMES = {
   samples: 'samples', tree: 'tree', chord: 'chord', detours: 'path as found', path: 'path',
@@ -81,7 +81,7 @@ const MAP_KEYS = {
 function pressKey(event) {
   if (event.ctrlKey || event.altKey || event.metaKey) return;
   const {key, target} = event;
-  // What has the focus keeps the keys that work it.
+  // An element with the focus keeps the keys that operate it.
   if (key === ' ' && target.matches('button, summary, [type="checkbox"]')) return;
   if (key.startsWith('Arrow') && target.matches('[type="range"]')) return;
   const act = (target === canvas && MAP_KEYS[key]) || KEYS[key];

@@ -48,7 +48,7 @@ function setTime(value) {
   redraw();
 }
 
-// What the page shows at this time, in a sentence.
+// Return what the page shows at this time, as a sentence.
 function caption() {
   const on = shown();
   if (!on.length) return 'Switch an algorithm on to see its search.';
@@ -66,7 +66,7 @@ function caption() {
   return 'A path is found. Points of it that see each other are joined by a straight line.';
 }
 
-// Go on or back by one sample, or by a fiftieth of those that there are.
+// Go forwards or backwards by one sample, or by a fiftieth of those that are shown.
 function step(way) {
   play(false);
   const n = samplesAt();

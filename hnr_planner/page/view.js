@@ -5,7 +5,7 @@ const STEP = 60;  // pixels that an arrow moves the map
 let view = {x: 0, y: 0, scale: 1};  // the point in the middle [m], and pixels for each metre
 let fitted = true;  // whether nobody has moved the view
 
-// Show the whole map where the panel and the caption leave room.
+// Show the whole map in the area that the panel and the caption leave free.
 function fit() {
   const [[left, low], [right, high]] = data.map.box;
   const [width, height] = [canvas.clientWidth, canvas.clientHeight];

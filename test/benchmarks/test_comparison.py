@@ -70,6 +70,6 @@ def test_figures_are_those_of_the_report(
 
 def test_figures_in_the_text_are_those_of_the_report() -> None:
     text = PAGE.partition('## Measured')[2]
-    told = re.findall(r'\d\.?\d*e\+\d\d|[\d.]+(?= ms (?:besides|to))', text)
-    assert len(told) == 6
-    assert [figure for figure in told if figure not in REPORT] == []
+    quoted = re.findall(r'\d\.?\d*e\+\d\d|[\d.]+(?= ms (?:besides|to))', text)
+    assert len(quoted) == 6
+    assert [figure for figure in quoted if figure not in REPORT] == []

@@ -1,4 +1,4 @@
-"""Numbers from runs that were written down by hand."""
+"""Statistics of runs, from records written by hand."""
 
 from benchmarks.competitors import Competitor
 from benchmarks.judge import Judge, Record

@@ -21,7 +21,7 @@ TIME_LIMIT = 120.0
 
 
 class Ran(NamedTuple):
-    """What a command did."""
+    """Exit code and output of a command."""
 
     code: int
     out: str
@@ -44,7 +44,7 @@ def run_process(*arguments: object, cwd: Path | None = None, **environment: str)
 
 @pytest.fixture(scope='session')
 def compiled() -> None:
-    """Compile once, so that no command prints that it waits for that."""
+    """Load the machine code once, so that no command waits for it."""
     warm_up('paths', 'samples')
 
 
@@ -87,7 +87,7 @@ def solid_file(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def at(occupancy: OccupancyMap, row: float, col: float) -> tuple[float, float]:
-    """Return the point (x, y) [m] at the middle of a cell, for yaw and all."""
+    """Return the centre (x, y) [m] of a cell, in the map frame."""
     x, y, yaw = occupancy.origin
     right, up = (col + 0.5) * occupancy.resolution, (row + 0.5) * occupancy.resolution
     return (

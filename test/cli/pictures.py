@@ -1,4 +1,4 @@
-"""What a picture must be, whatever it shows."""
+"""The check that a file is a picture in the expected colours."""
 
 from pathlib import Path
 
@@ -8,7 +8,7 @@ from PIL import Image
 
 
 def check_picture(file: Path, *colours: str) -> None:
-    """Check that a file is a PNG of a sane size, with many colours, and those named among them."""
+    """Check that a file is a PNG of reasonable size with many colours, these among them."""
     with Image.open(file) as image:
         assert image.format == 'PNG'
         width, height = image.size

@@ -1,4 +1,4 @@
-"""Bad input: exit code 2, nothing on stdout, one line on stderr that says what and where."""
+"""Bad input: exit code 2, nothing on stdout, one line on stderr that names fault and place."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -83,7 +83,7 @@ CASES = {
 
 @pytest.fixture
 def places(rooms_file: Path, solid_file: Path, tmp_path: Path) -> dict[str, str]:
-    """Return the files that the words in capitals stand for."""
+    """Return the files that replace the words in capitals of a command."""
     broken, imageless = tmp_path / 'broken.yaml', tmp_path / 'imageless.yaml'
     text = rooms_file.read_text()
     broken.write_text(text.replace('resolution: 0.1', 'resolution: minus one'))

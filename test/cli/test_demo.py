@@ -17,12 +17,12 @@ import pytest
 pytest.importorskip('rclpy', reason='the demo needs ROS 2')
 
 READY_WITHIN = 240.0
-# With its nodes the demo runs on one map of each kind; test_demo_parts.py has the scenes of all.
+#: One real map of each kind for the whole demo; test_demo_parts.py has the scenes of all.
 EACH_KIND = list({file.suffix: file for file in REAL_MAPS}.values())
 
 
 class Demo:
-    """One run of the demo, with a mark in the environment by which all its processes are known."""
+    """One run of the demo; a mark in the environment identifies all its processes."""
 
     def __init__(self, folder: Path, *arguments: object) -> None:
         """Start it in a folder."""
@@ -54,12 +54,12 @@ class Demo:
         self._process.send_signal(number)
 
     def finish(self) -> tuple[int, str]:
-        """Wait for its end; return exit code and all that it said."""
+        """Wait for its end; return the exit code and all that it printed."""
         rest, _ = self._process.communicate(timeout=READY_WITHIN)
         return self._process.returncode, ''.join(self.lines) + rest
 
     def members(self, command: str = '') -> list[int]:
-        """Return the processes of this demo, those whose command line has a word in it."""
+        """Return the ids of the processes of this demo whose command line contains a word."""
         found = []
         for folder in Path('/proc').glob('[0-9]*'):
             try:
@@ -71,7 +71,7 @@ class Demo:
         return found
 
     def end(self) -> None:
-        """Leave nothing behind, whatever happened."""
+        """Kill all processes that are left."""
         for pid in self.members():
             os.kill(pid, signal.SIGKILL)
         self._process.wait()
@@ -94,7 +94,7 @@ def start(tmp_path: Path) -> Iterator[object]:
 
 
 def check_success(demo: Demo) -> None:
-    """Check that a demo did all that it should."""
+    """Check that a demo solved both requests, drew its picture, and left no process."""
     code, said = demo.finish()
     assert code == 0, said
     for algorithm in ('hit_and_run', 'rrt'):

@@ -91,7 +91,7 @@ class TestCheck:
 
 
 class TestScene:
-    """What the demo asks for."""
+    """The request that the demo chooses."""
 
     def test_office_is_found_and_fits_the_robot(self) -> None:
         assert office_file() == OFFICE

@@ -1,4 +1,4 @@
-"""Pictures: what is drawn is where it is, in the colour that the legend gives it."""
+"""Pictures show everything at its position, in the colour of the legend."""
 
 import math
 from pathlib import Path

@@ -5,13 +5,14 @@ from pathlib import Path
 import sys
 from test.cli.conftest import Ran, run_process
 
-from hnr_planner.cli import experiment
-from hnr_planner.experiments import NAMES
+from hnr_planner.experiments import EXPERIMENTS, NAMES
 import pytest
 
 
-def test_names_are_those_of_the_experiments() -> None:
-    assert experiment.NAMES == NAMES
+def test_help_lists_every_experiment(run: Callable[..., Ran]) -> None:
+    text = run('experiment', '--help').out
+    for entry in EXPERIMENTS.values():
+        assert f'  {entry.name} ' in text and entry.summary in text
 
 
 def test_it_writes_prints_and_shows(
@@ -36,7 +37,7 @@ def test_without_a_browser_it_says_so(tmp_path: Path) -> None:
     command = ['experiment', 'clouds', '--runs', 1, '--out', tmp_path, '--jobs', 1, '--show']
     ran = run_process(*command, BROWSER='/nonexistent', PATH='', DISPLAY='')
     assert ran.code == 0
-    assert ran.err.endswith('there is no browser to show it in\n')
+    assert ran.err.endswith('no browser was found to show it\n')
 
 
 def test_an_unknown_name_is_refused(run: Callable[..., Ran], tmp_path: Path) -> None:

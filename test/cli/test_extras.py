@@ -1,4 +1,4 @@
-"""Libraries that only some commands need: named, with the extra that brings them, when missing."""
+"""A command whose libraries are missing names the extra that provides them."""
 
 from pathlib import Path
 import subprocess
@@ -7,7 +7,7 @@ from test.cli.conftest import OFFICE, ROOT
 
 import pytest
 
-#: Runs the command line in a Python that finds none of some libraries.
+#: Program that runs the command line without access to some libraries.
 WITHOUT = """
 import sys
 

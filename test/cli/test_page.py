@@ -21,7 +21,7 @@ from typing import Any
 from hnr_planner.core import GridSpace, plan
 from hnr_planner.core.planning.registry import PLANNERS
 from hnr_planner.maps import load_map, OccupancyMap
-from hnr_planner.page.write import path_as_found
+from hnr_planner.page.write import COLOURS, path_as_found
 from matplotlib.colors import to_rgb
 import numpy as np
 from PIL import Image
@@ -43,19 +43,17 @@ OPTIONS = (
 )
 REQUEST = ('--start', 3, 22, '--goal', 34, 5, '--robot-radius', 0.22, '--seed', 3)
 REQUEST += ('--optimize-for', 0, '--time-limit', 600)
-SHOWN = {
-    'hit_and_run': '#0072B2',
-    'rrt': '#D55E00',
-    'hit_and_run_connect': '#009E73',
-    'rrt_connect': '#CC79A7',
-}
+#: Every planner that searches, with its colour on the page.
+SHOWN = dict(
+    zip((entry.name for entry in PLANNERS if entry.name != 'auto'), COLOURS, strict=False)
+)
 PATIENCE = 60.0
 PHONE = {'width': 390, 'height': 844, 'deviceScaleFactor': 2, 'mobile': True}
 
 
 @pytest.fixture(scope='module')
 def browser() -> Iterator[Any]:
-    """Return a browser that reaches nothing but files."""
+    """Return a browser without network access."""
     programs = [shutil.which(name) for name in ('chromium', 'chromedriver')]
     if None in programs:
         pytest.skip('needs chromium and chromedriver')
@@ -76,13 +74,13 @@ def data_of(file: Path) -> dict[str, Any]:
 
 
 def through_the_door(rooms: OccupancyMap) -> list[object]:
-    """Return a start in one room and a goal in the other."""
+    """Return arguments for a start in one room and a goal in the other."""
     return ['--start', *at(rooms, 5, 5), '--goal', *at(rooms, 8, 75)]
 
 
 @pytest.fixture
 def page(browser: Any, run: Callable[..., Ran], tmp_path: Path) -> Iterator[Page]:
-    """Return the page of a request on the office map; no script may have failed in the end."""
+    """Return the page of a request on the office map, and check that no script fails."""
     file = tmp_path / 'page.html'
     ran = run('plan', OFFICE, *REQUEST, '--algorithm', 'hit_and_run', '--json', '--html', file)
     assert ran.code == 0, ran.err
@@ -95,13 +93,13 @@ class Page:
     """A page in the browser."""
 
     def __init__(self, browser: Any, file: Path, result: dict[str, Any] | None = None) -> None:
-        """Open it, and stop what plays by itself."""
+        """Open the page."""
         self.browser, self.file, self.result = browser, file, result
         browser.get_log('browser')
         browser.get(file.as_uri())
 
     def errors(self) -> list[str]:
-        """Return what went wrong since the page was opened."""
+        """Return the errors since the page was opened."""
         return [line['message'] for line in self.browser.get_log('browser')]
 
     def find(self, selector: str) -> Any:

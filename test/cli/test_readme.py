@@ -8,6 +8,7 @@ import sys
 from test.cli.conftest import ROOT
 from test.cli.pictures import check_picture
 
+from hnr_planner.core.kernels import modes
 from hnr_planner.core.planning.registry import PLANNERS
 from PIL import Image
 import pytest
@@ -34,7 +35,11 @@ def run(command: list[str], folder: Path) -> str:
     done = subprocess.run(
         command,
         cwd=folder,
-        env={'PYTHONPATH': str(ROOT), 'PATH': f'{Path(sys.executable).parent}:/usr/bin:/bin'},
+        env={
+            'PYTHONPATH': str(ROOT),
+            'PATH': f'{Path(sys.executable).parent}:/usr/bin:/bin',
+            modes.VARIABLE: modes.Mode.COMPILED.value,
+        },
         capture_output=True,
         text=True,
         timeout=300,
@@ -72,7 +77,7 @@ def leads_somewhere(page: Path, link: str) -> bool:
 
 
 def headings(page: str) -> set[str]:
-    """Return what links call the headings of a page."""
+    """Return the anchors of the headings of a page."""
     titles = re.findall(r'^#+ (.*)$', page, re.MULTILINE)
     return {re.sub(r'[^\w -]', '', title.lower()).replace(' ', '-') for title in titles}
 

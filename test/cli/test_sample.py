@@ -105,10 +105,10 @@ def test_without_a_seed_the_points_differ_but_can_be_had_again(
 ) -> None:
     file = tmp_path / 'points.csv'
     command = ['sample', rooms_file, '--n', 20, '--csv', file]
-    told, first = run(*command).out, file.read_text()
+    printed, first = run(*command).out, file.read_text()
     run(*command)
     assert file.read_text() != first
-    seed = told.split('seed ')[1].split(')')[0]
+    seed = printed.split('seed ')[1].split(')')[0]
     run(*command, '--seed', seed)
     assert file.read_text() == first
 
@@ -129,7 +129,5 @@ def test_a_reader_that_leaves_is_no_error(rooms_file: Path) -> None:
         text=True,
         timeout=120,
     )
-    # A slow machine is told what it waits for.
-    told = [line for line in done.stderr.splitlines() if not line.startswith('loading')]
-    assert (done.returncode, told) == (0, [])
+    assert (done.returncode, done.stderr) == (0, '')
     assert len(done.stdout.splitlines()) == 2

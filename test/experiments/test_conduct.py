@@ -1,4 +1,4 @@
-"""Experiments can be broken off, continued and repeated, and their files stay the same."""
+"""Experiments can be interrupted, resumed and repeated, and their files stay the same."""
 
 from collections.abc import Callable, Mapping
 import json
@@ -66,7 +66,7 @@ def written(folder: Path) -> dict[str, bytes]:
 
 @pytest.fixture(scope='module')
 def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Return the folder of an experiment of four runs, done at once."""
+    """Return the folder of an experiment of four runs, conducted in one call."""
     folder = tmp_path_factory.mktemp('whole')
     conduct(experiment(CASES), 4, folder, n_jobs=1)
     return folder
@@ -126,7 +126,7 @@ def test_more_runs_continue_fewer_and_fewer_read_their_part(whole: Path, tmp_pat
 
 def test_figure_and_numbers_say_what_was_run(whole: Path) -> None:
     for end in ('svg', 'md'):
-        # XML allows no -- in a comment, which is where matplotlib keeps the words of a figure.
+        # XML allows no -- in a comment, where matplotlib puts the text of a figure.
         text = (whole / f'arithmetic.{end}').read_text().replace('- -', '--')
         assert '4 runs of each, seeds 0 to 3' in text
         assert 'python -m hnr_planner experiment arithmetic --runs 4' in text

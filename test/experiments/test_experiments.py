@@ -81,7 +81,7 @@ def test_start_and_goal_are_far_apart_in_one_part(seed: int) -> None:
 
 @pytest.fixture
 def with_a_robot_map(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Lay a hall with a pillar into the folder of robot maps."""
+    """Write the map of a hall with a pillar into the folder of robot maps."""
     data = np.zeros((80, 120), dtype=np.int8)
     data[[0, -1]], data[:, [0, -1]], data[30:50, 50:60] = 100, 100, 100
     save_map(OccupancyMap(data, 0.05), tmp_path / 'hall.yaml')

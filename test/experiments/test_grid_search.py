@@ -1,4 +1,4 @@
-"""Grid search, with which ours is compared: free paths, and as short as they should be."""
+"""Grid searches that planners are compared with: their paths are free and short enough."""
 
 from test.brute_force import path_collisions
 from test.laws import maps

@@ -1,4 +1,4 @@
-"""Mixing: cells with the shares that they say, estimates around the truth, and known times."""
+"""Mixing: exact shares of cells, estimates on both sides of the truth, and known times."""
 
 from collections.abc import Callable, Iterator
 import dataclasses
@@ -45,7 +45,7 @@ def in_joined_boxes(n: int, rng: np.random.Generator) -> Floats:
 
 
 def in_crossed_beams(n: int, rng: np.random.Generator) -> Floats:
-    """Draw from the beams one after the other; in the cube of all of them one of n counts."""
+    """Draw uniform points of each beam in turn, and of their common cube only for the first."""
     points = rng.uniform(-WIDE, WIDE, size=(N_POINTS, n))
     axis = np.arange(N_POINTS) % n
     points[np.arange(N_POINTS), axis] = rng.uniform(-1.0, 1.0, N_POINTS)
@@ -63,7 +63,7 @@ DRAWN: dict[str, Callable[[int, np.random.Generator], Floats]] = {
 
 
 def surprise(mixing_set: MixingSet, points: Floats, shares: Floats) -> float:
-    """Return by how many deviations uniform points are farther from the shares than by chance."""
+    """Return the excess of uniform points' distance from the shares, in standard deviations."""
     distance = total_variation(mixing_set.cells(points), shares)
     return (distance.plug_in - distance.floor) * math.sqrt(len(points)) / 0.30
 
@@ -136,9 +136,9 @@ def test_steps_until_a_curve_falls_below_the_mark():
 
 def test_the_law_lies_between_both_estimates_and_follows_the_flow():
     """
-    Chains from one square, against powers of the flow between squares.
+    Chains that start in one square are compared with powers of the flow between squares.
 
-    1800 chains, at 6 of their standard deviations of .007, and squares that forget little.
+    1800 chains have a standard deviation of .007; the tolerance is 6 of them.
     """
     rooms = planar_sets()['door 0.2']
     flow = cell_flow(rooms.space, (6, 12), 1 << 17)
@@ -199,7 +199,7 @@ def test_exponents_are_those_of_the_powers_that_steps_grow_with():
 
 
 def test_the_bound_is_that_of_the_lemmas():
-    """At n = 2 the conductance is 7.9e-10, as docs/theory.md has it."""
+    """At n = 2 the conductance is 7.9e-10, as docs/theory.md states."""
     steps = math.log(math.sqrt(2.0) / 0.1) * 2.0 / 7.9e-10**2
     assert dimension.bound(2) == pytest.approx(steps, rel=0.02)
     assert dimension.bound(30) > 1e6 * dimension.bound(2)

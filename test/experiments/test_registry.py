@@ -2,8 +2,7 @@
 
 from pathlib import Path
 import pkgutil
-import subprocess
-import sys
+from test.fresh_python import run_and_list_imports
 
 from hnr_planner import experiments
 from hnr_planner.experiments import EXPERIMENTS, NAMES
@@ -13,14 +12,10 @@ ROOT = Path(__file__).resolve().parents[2]
 
 
 def test_the_registry_is_read_without_numerical_libraries() -> None:
-    program = (
-        'import sys\n'
-        'from hnr_planner.experiments.registry import EXPERIMENTS\n'
-        'print(*EXPERIMENTS)\n'
-        "print(*sorted({'numpy', 'numba', 'matplotlib', 'joblib', 'scipy'} & set(sys.modules)))\n"
-    )
-    ran = subprocess.run([sys.executable, '-c', program], capture_output=True, text=True, cwd=ROOT)
-    assert ran.stdout.splitlines() == [' '.join(NAMES), ''], ran.stderr
+    program = 'from hnr_planner.experiments.registry import EXPERIMENTS\nprint(*EXPERIMENTS)'
+    printed, packages = run_and_list_imports(program)
+    assert printed.split() == list(NAMES)
+    assert packages.isdisjoint({'numpy', 'numba', 'matplotlib', 'joblib', 'scipy'})
 
 
 def test_every_module_with_an_experiment_is_listed() -> None:

@@ -26,8 +26,8 @@ def write_map(tmp_path: Path) -> MapWriter:
     """
     Return a function that writes a map and returns its YAML file.
 
-    It takes the image (an array, an Image, or bytes as they are) and what is to differ from
-    HEADER; a key given as None is left out.
+    It takes the image (an array, an Image, or the bytes of the file) and changes of ``HEADER``; a
+    key given as None is left out.
     """
 
     def write(image: Any = ((0,),), /, **changes: Any) -> Path:

@@ -13,7 +13,7 @@ from .conftest import MapWriter
 
 
 def message(path: Path) -> str:
-    """Return the error that a file gives, which has to be one line that starts with its name."""
+    """Return the error of loading a file: one line that starts with its name."""
     with pytest.raises(MapFileError) as caught:
         load_map(path)
     text = str(caught.value)
@@ -188,7 +188,7 @@ def test_what_else_is_no_yaml_is_named(tmp_path: Path, content: bytes, kind: str
 
 
 def encoded(kind: str) -> bytes:
-    """Return the file of an image of noise, which no format can make small."""
+    """Return the bytes of an image of noise, which no format compresses."""
     noise = np.random.default_rng(3).integers(0, 256, (50, 50)).astype(np.uint8)
     buffer = io.BytesIO()
     Image.fromarray(noise).save(buffer, kind)

@@ -32,7 +32,7 @@ def pieces(mask: NDArray[np.bool_], connectivity: int = 4) -> int:
 
 
 def opened(mask: NDArray[np.bool_], side: int) -> NDArray[np.bool_]:
-    """Return what squares of so many cells cover that fit into the mask."""
+    """Return the cells covered by squares of this side that fit into the mask."""
     square = np.ones((side, side), np.uint8)
     walled = np.pad(mask, side).astype(np.uint8)
     corners = cv2.erode(walled, square, anchor=(0, 0))
@@ -57,7 +57,7 @@ def test_map_of_a_corridor_is_free_where_it_is_not_blocked(made: Corridor) -> No
 
 
 def steps_from(made: Corridor, point: tuple[float, float]) -> NDArray[np.int_]:
-    """Flood the free cells from a point: the number of steps to each, -1 for blocked ones."""
+    """Return the number of steps to each free cell from a point, -1 for blocked cells."""
     blocked = np.pad(made.blocked, 1, constant_values=True)
     steps = np.full(blocked.shape, -1)
     row, column = cell(made, point)

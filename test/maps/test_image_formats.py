@@ -22,7 +22,7 @@ def read(tmp_path: Path, name: str, image: Image.Image | bytes, **options: Any) 
 
 
 def values(path: Path) -> np.ndarray:
-    """Return the grey value of each pixel, -1 where it is transparent, from the image's top."""
+    """Return the grey value of each pixel, -1 where transparent, the top row first."""
 
     def part(meaning: Callable[[Pixels], np.ndarray]) -> np.ndarray:
         return read_cells(path, lambda pixels: meaning(pixels).astype(np.int8))[::-1].astype(int)

@@ -1,4 +1,4 @@
-"""Large images are read within the memory they need, or refused by it, never as attacks."""
+"""Large images are read within the memory that they need, and refused only without it."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -29,7 +29,7 @@ print(*data.shape, (data == 100).sum(), (after - before) // 1024)
 
 @contextmanager
 def address_space(n_bytes: float) -> Iterator[None]:
-    """Let this process allocate so much more, and no more."""
+    """Limit this process to so many more bytes while the block runs."""
     before = resource.getrlimit(resource.RLIMIT_AS)
     pages = int(Path('/proc/self/statm').read_text().split()[0])
     limit = pages * resource.getpagesize() + int(n_bytes)

@@ -1,4 +1,4 @@
-"""What the pixels of a map_server map mean."""
+"""Pixels of a map_server map become occupancies as Nav2 defines them."""
 
 import math
 from pathlib import Path
@@ -14,7 +14,7 @@ EVERY_GREY = np.arange(256, dtype=np.uint8).reshape(16, 16)
 
 
 def values(path: Path) -> list[list[int]]:
-    """Return the grid from the top of the image, as a person sees it."""
+    """Return the cells of a map, the top row of the image first."""
     return load_map(path).data[::-1].tolist()
 
 

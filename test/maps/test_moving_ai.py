@@ -1,4 +1,4 @@
-"""Moving AI's grid maps."""
+"""Grid maps of the Moving AI benchmarks are read by the rules of their format."""
 
 from pathlib import Path
 

@@ -20,7 +20,7 @@ free_thresh: 0.196
 
 
 def read(tmp_path: Path, text: str | bytes) -> tuple[object, ...]:
-    """Return what a YAML file says of a map of one black cell and one white one."""
+    """Return resolution, origin and cells of a map of one black and one white pixel."""
     Image.fromarray(np.array([[0, 255]], np.uint8)).save(tmp_path / 'map.png')
     path = tmp_path / 'map.yaml'
     path.write_bytes(text if isinstance(text, bytes) else text.encode())

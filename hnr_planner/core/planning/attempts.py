@@ -14,6 +14,8 @@ from hnr_planner.core.kernels.clock import working_time
 from hnr_planner.core.lengths import path_length
 from hnr_planner.core.planning.limits import Budget, run
 from hnr_planner.core.planning.planner import PathSearch, Search, Work
+from hnr_planner.core.planning.planners.auto import Auto
+from hnr_planner.core.planning.planners.polyanya import Polyanya
 from hnr_planner.core.planning.postprocessing.clearance import increase_clearance, path_cost
 from hnr_planner.core.planning.postprocessing.simplify import shorten
 from hnr_planner.core.planning.request import Request
@@ -23,6 +25,8 @@ import numpy as np
 SearchType = TypeVar('SearchType', bound=Search)
 Found = TypeVar('Found')
 
+#: A path at most this many times as long as the lower bound is the shortest, up to margins.
+PROVED = 1.0 + 1e-6
 #: Least decrease of the cost, as a fraction, for which a round counts as a gain.
 LEAST_GAIN = 1e-3
 #: Largest number of searches when paths are not free in the caller's coordinates.
@@ -45,6 +49,10 @@ class Attempt(NamedTuple):
         Cost that attempts minimize: the length, weighted near walls where a clearance is wanted.
     first : FirstSolution or None
         The path as found.
+    planner : str
+        Name of the planner that made the path.
+    lower_bound : float
+        Length that no free path falls below, caller's units.
 
     """
 
@@ -53,6 +61,8 @@ class Attempt(NamedTuple):
     path: Floats
     cost: float
     first: FirstSolution | None
+    planner: str
+    lower_bound: float
 
 
 def attempt(
@@ -65,22 +75,25 @@ def attempt(
     """
     Search once and improve the path that was found.
 
-    With a budget for ``optimizing``, the rough path of the space (``Space.rough_path``) is a
-    second candidate: the shorter of the two is improved first, the other one while that budget
-    lasts.
+    With a budget for ``optimizing`` the planner ``auto`` looks for the shortest path as well,
+    where the space has slabs. A planner that was asked for by name is improved by itself alone.
     """
     status, search, path = _search(request, number, budget)
+    planner = getattr(search, 'made_by', request.planner.name)
+    bound = _lower_bound(request, search)
     if status is not PlannerStatus.SOLVED:
-        return Attempt(status, search, path, math.inf, None)
+        return Attempt(status, search, path, math.inf, None, planner, bound)
     first = FirstSolution(working_time() - began, path_length(path), path)
-    if len(path) == 2 or optimizing is None:
-        return Attempt(status, search, *_improved(request, number, search, path, budget), first)
-    shorter, *longer = sorted([path, *_rough_paths(request)], key=path_length)
-    best = _improved(request, number, search, shorter, budget)
-    for other in longer:
-        if optimizing.stop() is None:
-            best = min(best, _improved(request, number, search, other, optimizing), key=_cost)
-    return Attempt(status, search, *best, first)
+    candidates = []
+    if len(path) > 2 and optimizing is not None and isinstance(request.planner, Auto):
+        shortest, bound = _shortest_path(request, optimizing)
+        if shortest is not None:
+            kept_clear = _with_cost(request, shortest, optimizing)
+            candidates.append(Attempt(status, search, *kept_clear, first, Polyanya.name, bound))
+    if request.clearance > 0.0 or not candidates:
+        improved = _improved(request, number, search, path, budget)
+        candidates.append(Attempt(status, search, *improved, first, planner, bound))
+    return min(candidates, key=lambda candidate: candidate.cost)
 
 
 def _improved(
@@ -90,12 +103,13 @@ def _improved(
     if request.simplify and not search.taut and len(path) > 2:
         space, rng, found = request.space, request.stream(number, SHORTEN), path
         path = budget.within(lambda: shorten(space, found, rng, budget), found)
+    return _with_cost(request, path, budget)
+
+
+def _with_cost(request: Request, path: Floats, budget: Budget) -> tuple[Floats, float]:
+    """Return a path (m, dim) moved away from walls as was asked, and its cost."""
     path = with_clearance(request, path, budget)
     return path, path_cost(request.space, path, request.clearance)
-
-
-def _cost(improved: tuple[Floats, float]) -> float:
-    return improved[1]
 
 
 def optimize(
@@ -112,13 +126,15 @@ def optimize(
     It ends after ``patience`` consecutive rounds without a gain.
     """
     work, number, idle = Work.of(best.search), 1, 0
-    while number <= rounds and idle < patience and len(best.path) > 2 and budget.stop() is None:
+    while number <= rounds and idle < patience and budget.stop() is None:
+        if len(best.path) == 2 or best.cost <= PROVED * best.lower_bound:
+            break
         again = attempt(request, number, budget, began)
         work = work.plus(Work.of(again.search))
         number += 1
         idle = 0 if again.cost < (1.0 - LEAST_GAIN) * best.cost else idle + 1
         if again.cost < best.cost:
-            best = again
+            best = again._replace(lower_bound=best.lower_bound)
     return best, work
 
 
@@ -189,10 +205,26 @@ def _in_caller_s_frame(request: Request, points: Floats) -> Floats:
     return path
 
 
-def _rough_paths(request: Request) -> list[Floats]:
-    """Return the rough path (m, dim) of the space, caller's frame, if it has one that is free."""
-    rough = request.space.rough_path(request.problem.start, request.problem.goal)
-    if rough is None:
-        return []
-    path = _in_caller_s_frame(request, rough)
-    return [path] if request.space.is_path_free(path) else []
+def straight_length(request: Request) -> float:
+    """Return the straight distance from the start to the goal region: no path is shorter."""
+    return max(math.dist(request.start, request.goal) - request.goal_radius, 0.0)
+
+
+def _lower_bound(request: Request, search: PathSearch) -> float:
+    """Return the lower bound on lengths that a search has come to, caller's units."""
+    bound = getattr(search, 'lower_bound', 0.0) * request.space.scale
+    return max(bound, straight_length(request))
+
+
+def _shortest_path(request: Request, budget: Budget) -> tuple[Floats | None, float]:
+    """Return the shortest path (m, 2), None where it is not found in time, and a lower bound."""
+    space = request.space
+    if space.slabs is None or request.goal_radius > 0.0:
+        return None, straight_length(request)
+    search = Polyanya(space.slabs).start(request.problem, request.stream(0))
+    status = run(search, budget)
+    bound = _lower_bound(request, search)
+    if status is not PlannerStatus.SOLVED:
+        return None, bound
+    path = _in_caller_s_frame(request, search.path)
+    return (path if space.is_path_free(path) else None), bound

@@ -101,6 +101,7 @@ class MovedRequest:
             others=tuple(self._with_start(path) for path in result.others),
             first_solution=first,
             escape=self.escape,
+            lower_bound=result.lower_bound + self.escape,
         )
 
     def _with_start(self, path: Floats) -> Floats:

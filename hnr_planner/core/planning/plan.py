@@ -17,7 +17,14 @@ from hnr_planner.core.planning.alternatives.alternatives import (
     check_alternatives,
     with_alternatives,
 )
-from hnr_planner.core.planning.attempts import Attempt, attempt, optimize, with_clearance
+from hnr_planner.core.planning.attempts import (
+    Attempt,
+    attempt,
+    optimize,
+    PROVED,
+    straight_length,
+    with_clearance,
+)
 from hnr_planner.core.planning.ends import check_allowance, move_ends
 from hnr_planner.core.planning.limits import Budget
 from hnr_planner.core.planning.planner import Planner, Work
@@ -184,7 +191,7 @@ def _result_of_search(
     return PlanResult(
         status=best.status,
         message=_message(request, best, work.iterations, began),
-        planner=getattr(best.search, 'made_by', request.planner.name),
+        planner=best.planner,
         path=best.path,
         length=path_length(best.path) if len(best.path) else math.inf,
         samples=samples,
@@ -195,6 +202,7 @@ def _result_of_search(
         seed=request.seed,
         cut_by_time=budget.cut,
         first_solution=first,
+        lower_bound=best.lower_bound,
     )
 
 
@@ -209,6 +217,7 @@ def _result_without_search(
         first = FirstSolution(working_time() - began, path_length(path), path)
         path = with_clearance(request, path, budget)
         length = path_length(path)
+    bound = straight_length(request) if status is PlannerStatus.SOLVED else math.inf
     return PlanResult(
         status=status,
         message=message,
@@ -223,6 +232,7 @@ def _result_without_search(
         seed=request.seed,
         cut_by_time=budget.cut,
         first_solution=first,
+        lower_bound=bound,
     )
 
 
@@ -232,6 +242,16 @@ def _message(request: Request, best: Attempt, iterations: int, began: float) -> 
         found = f'path of {path_length(best.path):.6g} m with {len(best.path)} vertices'
         as_found = request.simplify and not best.search.taut and best.path is best.first.path
         nothing = ', of which no shortcut is free' if as_found and len(best.path) > 2 else ''
-        return f'{found} after {iterations} transitions{nothing}'
+        return f'{found} after {iterations} transitions{nothing}{_proof(request, best)}'
     seconds = working_time() - began
     return f'{best.status.value} ({iterations} transitions, {seconds:.3g} s)'
+
+
+def _proof(request: Request, best: Attempt) -> str:
+    """Return what is proved of the length of a path, to follow on a message."""
+    if best.lower_bound <= straight_length(request):
+        return ''
+    ratio = path_length(best.path) / best.lower_bound
+    if ratio <= PROVED:
+        return ', the shortest'
+    return f', at most {100.0 * (ratio - 1.0):.2g} % longer than the shortest'

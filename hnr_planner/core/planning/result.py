@@ -113,6 +113,9 @@ class PlanResult(SearchResult):
     goal_offset : float
         Distance from the requested goal to the end of the path [m] where the goal was moved
         within ``goal_tolerance``; else 0.
+    lower_bound : float
+        Length that no free path falls below [m]: that of the path itself, up to margins at
+        corners, where it is proved to be the shortest; inf where no path exists.
     escape : float
         Length of the first segment of the path [m] where it leads from a start that is not free
         to free space (``start_escape``); else 0.
@@ -122,6 +125,7 @@ class PlanResult(SearchResult):
     others: tuple[Floats, ...] = ()
     goal_offset: float = 0.0
     escape: float = 0.0
+    lower_bound: float = 0.0
 
     @property
     def paths(self) -> tuple[Floats, ...]:

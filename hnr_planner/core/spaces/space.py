@@ -230,14 +230,6 @@ class Space(ABC):
         """
         return True
 
-    def rough_path(self, start: Floats, goal: Floats) -> Floats | None:
-        """
-        Return a free path (m, dim) that takes a short route around obstacles, kernel frame.
-
-        It is not taut. None where the space has no such method, or finds no path.
-        """
-        return None
-
     def contains(self, points: ArrayLike) -> Any:
         """
         Return which points are free.

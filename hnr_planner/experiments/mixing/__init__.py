@@ -99,7 +99,7 @@ def figure(results: Results) -> Figure:
 
 
 def tables(results: Results) -> str:
-    """Return the tables of all parts."""
+    """Return the tables of mixing steps, ball radii, relaxation times and dimensions."""
     return '\n'.join(
         [
             'Steps until the total variation is below .1, by the estimates from below and from '

@@ -17,6 +17,7 @@ from hnr_planner.experiments.results import markdown, Results
 from matplotlib.axes import Axes
 import numpy as np
 
+#: The walks by their names in the results, and the names of the ball walks.
 WALKS = {
     'hit_and_run': LOOKS['hit_and_run'],
     'ball_walk': Look('ball walk, segment visible', '#E69F00', '^'),

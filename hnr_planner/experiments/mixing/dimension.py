@@ -17,6 +17,7 @@ from matplotlib.axes import Axes
 import numpy as np
 from numpy.typing import NDArray
 
+#: Dimensions of the solids.
 DIMENSIONS = (2, 3, 5, 8, 12, 20, 30)
 #: Two ranges to fit exponents to: they agree where the steps grow like one power of n.
 LOW, HIGH = DIMENSIONS[:4], DIMENSIONS[3:]

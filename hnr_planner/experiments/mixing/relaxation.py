@@ -25,7 +25,7 @@ REFINEMENT, N_LINES = 4, 1 << 18
 #: Draws of each chain in which moves are counted; lag of a move as a fraction of the computed
 #: time, and its minimum [steps]: the error made by cells falls with the lag.
 N_DRAWS, LAG, MIN_LAG = 1000, 0.5, 8
-#: Looks of the sets, by the first word of their names.
+#: Label, colour and marker of each set, by the first word of its name.
 LOOKS = {
     'L': Look('L', '#CC79A7', 'D'),
     'star': Look('star', '#E69F00', '^'),

@@ -42,9 +42,9 @@ def half_full_cube(dim: int) -> MixingSet:
 
 def ball(dim: int) -> MixingSet:
     """Build the unit ball; cells by the first coordinate, which has a beta distribution."""
-    parts, shape = np.arange(1, N_CELLS) / N_CELLS, (dim + 1) / 2.0
+    fractions, shape = np.arange(1, N_CELLS) / N_CELLS, (dim + 1) / 2.0
     start = FAR * np.eye(dim)[0]
-    edges = 2.0 * betaincinv(shape, shape, parts) - 1.0
+    edges = 2.0 * betaincinv(shape, shape, fractions) - 1.0
     return MixingSet(BallSpace(np.zeros(dim), 1.0), at(start), *_by_first(edges))
 
 

@@ -21,7 +21,6 @@ from hnr_planner.core.spaces.grid.fields import components, free_distance, infla
 from hnr_planner.core.spaces.grid.flood import flood_path_in_grid
 from hnr_planner.core.spaces.grid.frame import decimal, GridFrame
 from hnr_planner.core.spaces.grid.framed_space import FramedSpace
-from hnr_planner.core.spaces.grid.lattice import build_lattice, Lattice, rough_path
 from hnr_planner.core.spaces.grid.obstacles import costmap_inflation, Obstacles
 from hnr_planner.core.spaces.grid.slabs import build_slabs, Slabs
 from hnr_planner.core.spaces.grid.traversal import GridData
@@ -244,20 +243,10 @@ class GridSpace(FramedSpace):
         nearest, offset = nearest_in_component(self.data.labels, label, target, self.margin)
         return self.frame.from_kernel(nearest) if offset <= radius / self.scale else None
 
-    def rough_path(self, start: Floats, goal: Floats) -> Floats | None:
-        """Return the shortest path (m, 2) over a coarse lattice of the grid, kernel frame."""
-        path = rough_path(self.data, self._lattice, start, goal)
-        return path if len(path) else None
-
     @cached_property
     def slabs(self) -> Slabs:
         """Free space as slabs, for exact shortest paths; built when first used."""
         return build_slabs(self.data.free_distance)
-
-    @cached_property
-    def _lattice(self) -> Lattice:
-        """Coarse lattice of rough paths; built when first used, as it takes long."""
-        return build_lattice(self.data)
 
     @cached_property
     def island_points(self) -> Floats:

@@ -98,3 +98,49 @@ def test_the_fall_back_does_not_depend_on_the_size_of_the_batches(batch: int):
     assert searches[0].made_by == search.made_by
     np.testing.assert_array_equal(search.path, searches[0].path)
     np.testing.assert_array_equal(search.samples, searches[1].samples)
+
+
+def island(size: int) -> NDArray[np.bool_]:
+    """Return a room with a block of cells in its middle."""
+    blocked = np.zeros((3 * size, 3 * size), dtype=bool)
+    blocked[size : 2 * size, size : 2 * size] = True
+    return blocked
+
+
+def test_optimized_it_is_the_shortest_and_says_so():
+    space = GridSpace.from_blocked(island(4))
+    result = solve(space, (2.0, 6.0), (10.0, 6.5), optimize_iterations=1)
+    shortest = min(
+        math.dist((2.0, 6.0), (4.0, y)) + 4.0 + math.dist((8.0, y), (10.0, 6.5))
+        for y in (4.0, 8.0)
+    )
+    assert result.length == pytest.approx(shortest, abs=1e-6)
+    assert result.planner == 'polyanya' and result.message.endswith(', the shortest')
+    assert shortest - 1e-6 <= result.lower_bound <= result.length
+    assert len(result.samples) > 2  # those of the first search
+
+
+@pytest.mark.parametrize('seed', range(5))
+def test_no_path_is_shorter_than_its_lower_bound(seed: int):
+    rng = np.random.default_rng(seed)
+    space = GridSpace.from_blocked(rng.random((40, 40)) < 0.25, 0.1)
+    rows, columns = np.nonzero(space.largest_component())
+    start, goal = space.cell_centres(rows[[0, -1]], columns[[0, -1]])
+    exact = solve(space, start, goal, optimize_iterations=1)
+    for given in ({}, {'algorithm': 'rrt'}, {'goal_radius': 0.3}, {'clearance': 0.2}):
+        result = solve(space, start, goal, seed=seed, **given)
+        assert result.lower_bound <= result.length
+        if not given.get('goal_radius'):
+            assert result.lower_bound <= exact.lower_bound <= result.length
+
+
+def test_a_planner_by_name_is_improved_by_itself_alone():
+    space = GridSpace.from_blocked(island(4))
+    result = solve(space, (2.0, 6.0), (10.0, 6.5), algorithm='rrt', optimize_iterations=2)
+    assert result.planner == 'rrt'
+
+
+def test_where_no_path_exists_no_length_would_do():
+    blocked = np.zeros((5, 5), dtype=bool)
+    blocked[:, 2] = True
+    assert solve(GridSpace.from_blocked(blocked), (0.5, 0.5), (4.5, 0.5)).lower_bound == math.inf
