@@ -1,4 +1,4 @@
-"""The checker itself: it sees every collision that matters and passes what is legal."""
+"""The checker itself: it detects every collision that matters and passes what is legal."""
 
 from fractions import Fraction
 from test.brute_force import blocked_cells, chord_by_search, path_collisions

@@ -1,4 +1,4 @@
-"""The checker of trajectories itself: it sees what is wrong and passes what is legal."""
+"""The checker of trajectories itself: it detects errors and passes what is legal."""
 
 import math
 from test.curve_brute_force import (

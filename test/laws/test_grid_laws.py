@@ -81,7 +81,7 @@ def test_a_point_is_free_when_every_cell_that_it_touches_is(grid, frame):
 
 @pytest.mark.parametrize('frame', FRAMES)
 def test_a_point_that_rounds_onto_an_edge_has_one_answer(frame):
-    """Whichever way rounding takes it, alone or among many, every question agrees."""
+    """However it rounds, alone or among many, all queries of a point agree."""
     space = GridSpace.from_blocked(maps.TWO_ROOMS, *FRAMES[frame])
     rows, cols = maps.TWO_ROOMS.shape
     x, y = np.meshgrid(np.arange(0, cols + 0.1, 0.25), np.arange(0, rows + 0.1, 0.25))
@@ -316,7 +316,7 @@ def test_clearance_of_a_path_is_the_least_along_it(grid, frame):
     """
     Against points every few thousandths of a cell: the least of them is above the truth.
 
-    Clearance changes by no more than the way gone, so it is above by less than half a spacing.
+    Clearance changes by no more than the distance moved, so it is above by less than half a spacing.
     """
     occupied = GRIDS[grid]
     resolution, origin = FRAMES[frame]
@@ -341,7 +341,7 @@ def _dense(a, b):
 
 
 def test_clearance_of_a_segment_beside_one_square():
-    """Every way in which a segment can lie to a square: past corners, along edges, across."""
+    """Every position of a segment relative to a square: past corners, along edges, across."""
     space = GridSpace.from_blocked(LONE_CELL)
     rng = np.random.default_rng(13)
     for _ in range(400):

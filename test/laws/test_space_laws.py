@@ -173,7 +173,7 @@ def test_motion_is_valid_exactly_when_the_chord_reaches_its_end(space, rng):
     assert verdicts == {True, False}
 
 
-def test_motion_is_valid_both_ways_or_neither(space, rng):
+def test_motion_is_valid_in_both_directions_or_neither(space, rng):
     starts, ends = random_points(space, rng), random_points(space, rng)
     ends[::2] = starts[::2] + 0.1 * (ends[::2] - starts[::2])
     for start, end in zip(starts, ends, strict=True):
@@ -259,7 +259,7 @@ def test_a_pickled_space_and_a_copy_answer_alike(space, rng):
 
 def test_connected_is_an_equivalence_that_no_motion_leaves(space, rng):
     if not hasattr(space, 'connected'):
-        pytest.skip('this space does not know its components')
+        pytest.skip('this space cannot distinguish its components')
     points = free_points(space, rng, 25)
     related = np.array([[space.connected(a, b) for b in points] for a in points])
     assert related.diagonal().all()
@@ -272,7 +272,7 @@ def test_connected_is_an_equivalence_that_no_motion_leaves(space, rng):
 
 def test_no_point_that_is_not_free_is_connected(space, rng):
     if not hasattr(space, 'connected'):
-        pytest.skip('this space does not know its components')
+        pytest.skip('this space cannot distinguish its components')
     free = free_points(space, rng, 1)[0]
     points = random_points(space, rng)
     for point in points[~space.contains(points)]:
@@ -280,7 +280,7 @@ def test_no_point_that_is_not_free_is_connected(space, rng):
         assert not space.connected(free, point)
 
 
-def test_clearance_changes_by_no_more_than_the_way_gone(space, rng):
+def test_clearance_changes_by_no_more_than_the_distance_moved(space, rng):
     if not hasattr(space, 'clearance'):
         pytest.skip('this space measures no clearance')
     points = free_points(space, rng)

@@ -1,4 +1,4 @@
-"""Where curves leave spaces that planes and spheres bound, against looking very often."""
+"""First exits of curves from spaces bounded by planes and spheres, against dense tests."""
 
 import math
 from typing import Any
@@ -22,7 +22,7 @@ import numpy as np
 import pytest
 from shapely import Polygon
 
-LOOKS = 20_000
+N_TESTS = 20_000
 
 PLANE: dict[str, Space] = {
     'box': BoxSpace((0, 0), (3, 2)),
@@ -76,15 +76,15 @@ def test_contact_lies_between_the_last_free_look_and_the_next(name: str, space: 
             continue
         curve, end = draw_curve(rng, x, space.dim == 2), rng.uniform(0.1, 3.0)
         left = first_exit_on_curve(space.data, curve, end)
-        times = np.linspace(0.0, end, LOOKS)
+        times = np.linspace(0.0, end, N_TESTS)
         out = np.flatnonzero(~space.contains(points_on(curve, times)))
         if len(out) == 0:
-            # What it cuts off between two looks is less than they can see.
-            assert left == math.inf or chord_is_short(space, curve, left, end / LOOKS)
+            # What it cuts off between two tests is less than they resolve.
+            assert left == math.inf or chord_is_short(space, curve, left, end / N_TESTS)
             free += 1
         else:
             if left < times[out[0] - 1]:
-                assert chord_is_short(space, curve, left, end / LOOKS)
+                assert chord_is_short(space, curve, left, end / N_TESTS)
             else:
                 assert left <= times[out[0]]
             contacts += 1
@@ -92,7 +92,7 @@ def test_contact_lies_between_the_last_free_look_and_the_next(name: str, space: 
 
 
 def chord_is_short(space: Space, curve: Any, left: float, step: float) -> bool:
-    """Say whether a curve is out right after ``left``, though no look in steps could tell."""
+    """Return whether a curve is outside right after ``left``, where dense tests cannot decide."""
     times = left + np.geomspace(1e-9, step, 2000)
     return bool((~space.contains(points_on(curve, times))).any())
 

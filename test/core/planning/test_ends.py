@@ -1,4 +1,4 @@
-"""Ends that are moved: a goal within its tolerance, a start that is led out of inflated cells."""
+"""Ends that are moved: a goal within its tolerance, a start out of inflated cells."""
 
 import math
 from test.brute_force import path_collisions
@@ -34,7 +34,7 @@ def ask(space: GridSpace, start: Any, goal: Any = (0.5, 1.5), **given: Any) -> P
 
 
 @pytest.mark.parametrize('goal', [(1.95, 0.55), (1.97, 1.94)])
-def test_a_blocked_goal_gives_way_to_the_nearest_point_within_the_tolerance(goal: Any):
+def test_a_blocked_goal_is_replaced_by_the_nearest_point_within_the_tolerance(goal: Any):
     space = grid(rooms())
     result = ask(space, (0.5, 0.5), goal, goal_tolerance=0.3)
     assert result.status is PlannerStatus.SOLVED
@@ -72,7 +72,7 @@ def test_a_moved_goal_is_met_exactly_whatever_the_region():
 
 
 def nearest_by_hand(space: GridSpace, start: Any, radius: float, goal: Any) -> float:
-    """Return the length of the shortest way out of a start, from a fine raster of points."""
+    """Return the length of the shortest escape from a start, from a fine raster of points."""
     steps = np.arange(-radius, radius, CELL / 10.0) + CELL / 20.0
     x, y = np.meshgrid(start[0] + steps, start[1] + steps)
     points = np.stack([x.ravel(), y.ravel()], axis=-1)
@@ -94,7 +94,7 @@ def crosses(space: GridSpace, way: np.ndarray) -> bool:
 
 
 @pytest.mark.parametrize('origin', [(0.0, 0.0, 0.0), (-3.0, 2.0, 0.7)])
-def test_the_way_out_is_the_shortest_straight_one(origin: tuple[float, float, float]):
+def test_the_escape_is_the_shortest_straight_one(origin: tuple[float, float, float]):
     rng, lengths, n_solved = np.random.default_rng(1), [], 0
     for _ in range(25):
         data = np.where(rng.random((30, 30)) < 0.06, 100, 0).astype(np.int8)
@@ -109,7 +109,7 @@ def test_the_way_out_is_the_shortest_straight_one(origin: tuple[float, float, fl
             continue
         assert point is not None and space.contains(point)
         assert not crosses(space, np.array([start, point]))
-        # Where the nearest point of a cell is hidden, its centre stands for the rest of it.
+        # Where the nearest point of a cell is hidden, its centre represents the rest of it.
         length = math.dist(point, start)
         assert length <= expected + CELL / math.sqrt(2.0)
         lengths.append((length, expected))
@@ -148,13 +148,13 @@ def test_alternatives_are_led_out_too():
         np.testing.assert_array_equal(path[0], (0.15, 2.0))
 
 
-def test_no_way_out_within_the_radius_keeps_the_name_of_the_failure():
+def test_without_an_escape_the_status_of_the_failure_is_kept():
     result = ask(grid(rooms(), 0.2), NEAR_WALL, start_escape=0.1)
     assert result.status is PlannerStatus.INVALID_START and result.escape == 0.0
     assert 'no straight segment of 0.1 m at most' in result.message
 
 
-def test_no_way_leads_through_a_wall():
+def test_no_escape_crosses_a_wall():
     """A corridor as wide as the robot: nothing in it is free, but all beyond its wall is."""
     data = np.zeros((40, 40), dtype=np.int8)
     data[0:3, :] = data[5, :] = 100
@@ -164,7 +164,7 @@ def test_no_way_leads_through_a_wall():
 
 @pytest.mark.parametrize('thickness', [1, 4])
 @pytest.mark.parametrize('robot_radius', [0.0, 0.15])
-def test_no_way_leads_out_of_an_obstacle(thickness: int, robot_radius: float):
+def test_there_is_no_escape_from_an_obstacle(thickness: int, robot_radius: float):
     data = np.zeros((20, 40), dtype=np.int8)
     rows = slice(8, 8 + thickness)
     data[rows, 5:35] = 100
@@ -202,8 +202,8 @@ def test_of_unknown_cells_only_that_of_the_start_is_crossed():
     assert ask(grid(data), (0.95, 1.05), start_escape=0.5).status is PlannerStatus.INVALID_START
 
 
-def test_the_way_out_leads_to_where_the_goal_can_be_reached():
-    """A pocket is nearer than the room, but leads nowhere."""
+def test_the_escape_ends_where_the_goal_can_be_reached():
+    """A pocket is nearer than the large component, but the goal is not in it."""
     data = np.zeros((20, 20), dtype=np.int8)
     data[10] = -1
     for goal in ((0.5, 0.5), (0.5, 1.5)):
@@ -214,7 +214,7 @@ def test_the_way_out_leads_to_where_the_goal_can_be_reached():
 
 
 @pytest.mark.parametrize('start', [(-0.01, 0.5), (0.5, 2.1), (1e9, 0.5)])
-def test_a_start_outside_the_map_has_no_way_in(start: Any):
+def test_a_start_outside_the_map_has_no_escape(start: Any):
     assert ask(grid(rooms()), start, start_escape=10.0).status is PlannerStatus.INVALID_START
 
 

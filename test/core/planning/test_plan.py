@@ -226,7 +226,7 @@ def test_unreachable_is_proved_without_a_search(algorithm: str):
     assert 'no path exists' in result.message
 
 
-def test_a_gap_between_diagonal_obstacles_is_no_way():
+def test_no_path_passes_between_diagonal_obstacles():
     blocked = np.eye(12, dtype=bool)
     space = GridSpace.from_blocked(blocked)
     assert plan(space, (9.5, 1.5), (1.5, 9.5)).status is PlannerStatus.UNREACHABLE
@@ -245,7 +245,7 @@ def test_a_goal_region_across_the_wall_counts_when_it_reaches_over():
 # -- stopped -------------------------------------------------------------------------------------
 
 
-def test_a_time_limit_ends_the_call_and_the_search_is_told():
+def test_a_time_limit_ends_the_call_and_the_result_states_it():
     began = time.perf_counter()
     result = hard(time_limit=0.1)
     assert 0.1 <= time.perf_counter() - began < 2.0
@@ -273,7 +273,7 @@ def test_a_cancelled_search_ends_and_says_so():
 
 
 def test_a_search_that_only_rejects_still_hears_the_clock():
-    """A winding way of 23 cells in nine million: RRT's sampler hits it a few times a second."""
+    """A winding corridor of 23 cells in nine million: RRT's sampler hits it a few times a second."""
     blocked = np.ones((3000, 3000), dtype=bool)
     for turn in range(6):
         blocked[1500 + 2 * turn, 1500:1503] = False

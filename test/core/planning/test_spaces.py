@@ -269,7 +269,7 @@ def test_a_path_is_shortened_in_any_dimension():
     assert np.linalg.norm(goal - start) <= lengths[1] < 0.5 * lengths[0]
 
 
-def test_the_checker_sees_what_is_hit():
+def test_the_checker_detects_collisions():
     _, is_free, start, goal, *_ = SCENES['balls, 3-D']()
     assert len(collisions([start, goal], is_free, 0.01)) == 1
     assert collisions([start], is_free, 0.01) == []
@@ -285,7 +285,7 @@ def test_a_line_with_a_gap_is_searched_and_given_up(algorithm: str):
     assert (result.samples < 0.4).sum() + (result.samples > 0.6).sum() == len(result.samples)
 
 
-def test_parts_that_are_apart_are_told_without_a_search():
+def test_components_are_distinguished_without_a_search():
     two = PolygonSpace(shapely.MultiPolygon([shapely.box(0, 0, 1, 1), shapely.box(1, 1, 2, 2)]))
     lifted = ProductSpace(two, BoxSpace([0.0], [1.0]))
     drilled = DifferenceSpace(two, BallSpace((0.5, 0.5), 0.1))

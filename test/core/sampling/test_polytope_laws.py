@@ -2,7 +2,7 @@
 Walks in polytopes, which carry distances along, keep the law of one step and of many.
 
 Each statistical test here draws N points with a fixed seed and compares a p-value with 1e-7: with
-the seeds drawn anew, one run in a hundred thousand would fail.
+fresh seeds, one run in a hundred thousand would fail.
 """
 
 from test.core.sampling.chain_steps import step_of

@@ -130,7 +130,7 @@ def test_views_are_bounded():
 
 
 def test_mixing_follows_from_conductance():
-    """Lemma 6 as it stands: sqrt(M) (1 - Phi^2 / 2)^t reaches epsilon at t."""
+    """Lemma 6 as printed: sqrt(M) (1 - Phi^2 / 2)^t reaches epsilon at t."""
     t = mixing_bound(0.1, 4.0, 0.01)
     assert math.sqrt(4) * (1 - 0.1**2 / 2) ** t == pytest.approx(0.01)
     assert mixing_bound(0.1, math.inf, 0.01) == math.inf

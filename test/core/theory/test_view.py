@@ -71,7 +71,7 @@ def test_a_smooth_boundary_is_met_by_a_polygon():
     assert polygon_area(view(ring, (-0.75, 0.0), 40_000)) == pytest.approx(1.125, rel=1e-3)
 
 
-def test_what_sees_nothing_is_refused():
+def test_a_point_without_a_view_is_refused():
     with pytest.raises(RequestError, match='is occupied'):
         view(L_SET, (1.5, 1.5))
     with pytest.raises(RequestError, match='3 axes'):

@@ -1,4 +1,4 @@
-"""Motions of hundreds of thousands of steps: reduced, refused or returned, never in the way."""
+"""Motions of hundreds of thousands of steps: reduced, refused or returned, without blocking a cancellation."""
 
 import math
 from test.core.trajectories.worlds import (
@@ -25,7 +25,7 @@ import pytest
 
 
 class Count:
-    """An event that counts how often it is looked at, and is set from some look on."""
+    """An event that counts how often it is checked, and is set from a given check on."""
 
     def __init__(self, first_set: float = math.inf) -> None:
         self.first_set, self.looks = first_set, 0
@@ -68,8 +68,8 @@ def test_a_long_motion_that_cannot_be_shortened_is_refused_unless_it_is_asked_fo
 
 
 @pytest.mark.parametrize('simplify', [None, False])
-def test_all_that_follows_a_search_looks_at_the_budget(simplify: bool | None) -> None:
-    """Cancelled at each look in turn, the work ends there; and there is one for every chunk."""
+def test_all_that_follows_a_search_observes_the_budget(simplify: bool | None) -> None:
+    """Cancelled at each of the checks, the work ends there; and every chunk has a check."""
     request = check_kinodynamic_request(
         SPACE,
         INTEGRATOR,

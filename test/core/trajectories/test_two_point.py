@@ -32,7 +32,7 @@ def draw_state(rng: np.random.Generator, dim: int) -> Any:
 
 @pytest.mark.parametrize('dim', [1, 2, 3])
 def test_a_connection_leads_where_it_should_within_the_limits(dim: int) -> None:
-    """Across the way the speed limit may leave too little: then there may be none."""
+    """Across the displacement the speed limit may leave too little: then there may be none."""
     rng, found = np.random.default_rng(dim), 0
     for _ in range(300):
         a, b = draw_state(rng, dim), draw_state(rng, dim)

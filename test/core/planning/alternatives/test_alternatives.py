@@ -144,14 +144,14 @@ def lengths_over_cells(blocked: Bools, start: tuple, goal: tuple, n: int) -> lis
 
 
 @pytest.mark.parametrize('seed', range(30))
-def test_three_blocks_have_three_ways_and_more(seed: int):
+def test_three_blocks_have_three_paths_and_more(seed: int):
     result = plan(SPACE, START, GOAL, alternatives=3, seed=seed)
     check(SPACE, result, 3)
     assert len(result.paths) == 3
 
 
-def test_they_are_the_shortest_ways_there_are():
-    """Held against all ways over cell centres, which are up to 8 % longer than taut ones."""
+def test_they_are_the_shortest_of_all_classes():
+    """Compared with all paths over cell centres, which are up to 8 % longer than taut ones."""
     over_cells = lengths_over_cells(BLOCKED, (30, 3), (30, 56), 3)
     for seed in range(20):
         result = plan(SPACE, START, GOAL, alternatives=3, seed=seed)
@@ -203,7 +203,7 @@ def test_a_real_floor_with_a_robot():
         assert len(result.paths) == 3
 
 
-def test_a_goal_in_sight_has_other_ways_too():
+def test_a_visible_goal_has_other_paths_too():
     start, goal = SPACE.cell_centres(39, 3), SPACE.cell_centres(39, 56)
     assert SPACE.is_motion_valid(start, goal)
     result = plan(SPACE, start, goal, alternatives=3, seed=0)
@@ -235,7 +235,7 @@ def test_ways_into_a_region_end_where_the_first_does():
         )
 
 
-def test_without_an_island_there_is_one_way_and_the_answer_says_so():
+def test_without_an_island_there_is_one_path_and_the_message_states_it():
     blocked = np.zeros((30, 30), dtype=bool)
     blocked[:20, 15] = True
     space = GridSpace.from_blocked(blocked)
@@ -288,7 +288,7 @@ def test_a_path_is_pulled_taut_on_its_side_of_every_island(seed: int):
 
 
 def test_a_mutant_that_lets_go_of_the_class_is_caught(monkeypatch: pytest.MonkeyPatch):
-    """Pulled past islands, what differed falls together: then three ways are not found."""
+    """Shortened past islands, different classes become one: then three paths are not found."""
 
     def careless(space, path, rng, budget, islands):
         return shorten(space, path, rng, budget)
@@ -303,7 +303,7 @@ def test_a_mutant_that_lets_go_of_the_class_is_caught(monkeypatch: pytest.Monkey
 
 
 class SidelessSpace(GridSpace):
-    """A space that does not know its islands."""
+    """A space without ``island_points``."""
 
     island_points = None
 

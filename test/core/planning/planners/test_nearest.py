@@ -1,4 +1,4 @@
-"""The tree of boxes: exact against a look at every point, and shallow in whatever order."""
+"""The tree of boxes: as exact as brute force, and shallow whatever the order of the points."""
 
 from hnr_planner.core.planning.planners.nearest import (
     BoxTree,

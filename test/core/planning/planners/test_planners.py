@@ -152,7 +152,7 @@ def grow_by_definition(blocked, rng, vertices, parents, margin: float) -> int:
     return rejected
 
 
-def test_rrt_extends_the_nearest_vertex_as_far_as_it_sees():
+def test_rrt_extends_the_nearest_vertex_to_the_farthest_visible_point():
     blocked = maps.TWO_ROOMS
     search = start_search('rrt', blocked, seed=5, goal_radius=1e-12)
     search.advance(60)
@@ -190,7 +190,7 @@ def test_a_longest_step_holds_for_every_edge():
 
 
 def test_hundred_thousand_vertices_keep_their_nearest_parents():
-    """A goal that is never reached; the last vertices against a look at all that came before."""
+    """A goal that is never reached; the last vertices against brute force over those before."""
     search = start_search('rrt', np.zeros((50, 50), dtype=bool), seed=1, goal_radius=1e-12)
     search.advance(100_000)
     assert len(search.samples) == 100_001

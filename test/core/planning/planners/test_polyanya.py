@@ -47,7 +47,7 @@ def test_no_path_is_shorter(seed: int):
             assert path_collisions(result.path, blocked, 1.0) == []
 
 
-def test_the_solver_sees_a_path_that_is_too_long():
+def test_the_solver_detects_a_path_that_is_too_long():
     blocked = np.zeros((5, 5), dtype=bool)
     blocked[1:4, 2] = True
     space = GridSpace.from_blocked(blocked)

@@ -1,4 +1,4 @@
-"""Clearance: kept where there is room, given up in doors, never at the price of a collision."""
+"""Clearance: kept where possible, reduced in doors, never at the price of a collision."""
 
 from functools import partial
 from itertools import pairwise
@@ -53,7 +53,7 @@ def away(path: Floats, distance: float) -> Floats:
     return points[(from_start > distance) & (from_goal > distance)]
 
 
-# -- where there is room -------------------------------------------------------------------------
+# -- where the clearance is possible -------------------------------------------------------------
 
 
 @pytest.mark.parametrize('seed', range(10))
@@ -219,7 +219,7 @@ def test_the_clock_ends_it_with_a_path():
 
 
 class WalllessSpace(GridSpace):
-    """A space that does not know its clearance."""
+    """A space without ``walls``."""
 
     walls = None
 

@@ -60,7 +60,7 @@ def test_again_and_again_it_never_gets_longer():
 
 
 def test_a_path_around_one_corner_is_pulled_taut():
-    """The shortest way touches the corner of the wall; a simplified path comes within 1 %."""
+    """The shortest path touches the corner of the wall; a simplified path comes within 1 %."""
     blocked = np.zeros((40, 40), dtype=bool)
     blocked[:30, 20] = True
     space = GridSpace.from_blocked(blocked)
@@ -164,7 +164,7 @@ def shortcuts_of_vertices(space: Space, path: NDArray, seed: int, n_tries: int =
 
 
 def wall(dim: int) -> OracleSpace:
-    """Return a unit cube with a wall that leaves a way over it."""
+    """Return a unit cube with a wall that ends below its upper face."""
     return OracleSpace(
         njit(lambda x: not (0.4 < x[0] < 0.6 and x[1] < 0.8)),
         [0.0] * dim,

@@ -275,7 +275,7 @@ def test_a_larger_map_of_the_same_place():
     check_answers(roadmap, larger, seed=8)
 
 
-def test_one_that_has_grown_knows_more():
+def test_a_grown_roadmap_has_shorter_paths():
     blocked = maps.speckle(80, 100, 0.05, seed=1)
     space = GridSpace.from_blocked(blocked, RESOLUTION)
     small = poor_roadmap(space, 128)
@@ -287,7 +287,7 @@ def test_one_that_has_grown_knows_more():
 # -- refused -------------------------------------------------------------------------------------
 
 
-def test_a_request_for_another_space_is_told_to_update_first():
+def test_a_request_for_another_space_is_refused_with_a_hint_to_update():
     twin = GridSpace.from_blocked(BLOCKED, RESOLUTION, ORIGIN)
     with pytest.raises(RequestError, match='update'):
         plan(twin, START, GOAL, algorithm=ROADMAP)

@@ -39,7 +39,7 @@ def repaired(
 
 
 def check_paths(shortest: ShortestPaths, points: Floats, visibility: Bools) -> None:
-    """Compare the lengths with SciPy's, and follow each way along its edges."""
+    """Compare the lengths with SciPy's, and follow each path along its edges."""
     length = cdist(points, points)
     graph = np.where(visibility, length, np.inf)
     np.testing.assert_allclose(shortest.distance, shortest_path(graph), rtol=1e-5)
@@ -63,7 +63,7 @@ def check_paths(shortest: ShortestPaths, points: Floats, visibility: Bools) -> N
     density=st.sampled_from([0.05, 0.2, 0.6]),
     fraction_changed=st.sampled_from([0.0, 0.02, 0.5, 1.0]),
 )
-def test_ways_are_shortest_made_new_and_mended(
+def test_paths_are_shortest_built_and_repaired(
     seed: int, n_nodes: int, density: float, fraction_changed: float
 ):
     rng = np.random.default_rng(seed)

@@ -20,7 +20,7 @@ def test_chains_that_mix_converge():
     assert found.r_hat.shape == found.ess_tail.shape == found.mcse_mean.shape == (3,)
 
 
-# -- ways to be stuck
+# -- stuck chains
 
 
 def all_frozen(draws):
@@ -108,7 +108,7 @@ def test_what_is_stuck_is_never_called_converged(spoilt, reason):
 
 
 def test_r_hat_alone_and_effective_sizes_alone_would_have_passed_some():
-    """So the other ways of looking earn their keep."""
+    """So the other statistics are needed."""
     hidden = diagnose(opposite_quarters_each(DRAWS))
     assert hidden.r_hat.max() < 1.01
     assert min(hidden.ess_bulk.min(), hidden.ess_tail.min()) > 400

@@ -79,7 +79,7 @@ def test_units_do_not_matter(scale):
     np.testing.assert_allclose(scaled.mcse_mean, ours.mcse_mean * scale)
 
 
-def test_r_hat_sees_chains_that_differ_in_their_spread_only():
+def test_r_hat_detects_chains_that_differ_in_their_spread_only():
     values = chains(0.0, 4, 1000)
     values[0] *= 3.0
     assert values.mean(axis=1) == pytest.approx(0.0, abs=0.2)
@@ -87,7 +87,7 @@ def test_r_hat_sees_chains_that_differ_in_their_spread_only():
 
 
 def test_heavy_tails_hide_no_chain_that_is_elsewhere():
-    """Draws without mean or variance; a variance of the draws themselves sees nothing."""
+    """Draws without mean or variance; a variance of the draws themselves detects nothing."""
     values = np.random.default_rng(5).standard_cauchy((4, 1000))
     assert r_hat(values) < 1.01
     values[0] += 3.0

@@ -1,5 +1,5 @@
 """
-Chains confined to fine patterns are told apart, and chains of one law are not.
+Chains confined to fine patterns are distinguished, and chains of one law are not.
 
 False alarms. ``FALSE_ALARM`` bounds their probability for independent draws of any number; the
 bound is held to exact hypergeometric tails, and to frequencies at a level that shows in few runs.
@@ -162,7 +162,7 @@ def test_a_test_of_correlated_draws_is_caught(monkeypatch: pytest.MonkeyPatch):
 
 
 def test_a_classifier_that_sees_marginals_only_is_caught(monkeypatch: pytest.MonkeyPatch):
-    """It tells no black square from a white one."""
+    """It cannot distinguish black squares from white ones."""
 
     def of_one_coordinate(training: Floats, testing: Floats) -> NDArray[np.int64]:
         return assignments(training[:, :, :1], testing[:, :, :1])

@@ -127,7 +127,7 @@ def test_many_edges():
         assert not polygon.contains(outer)
 
 
-# -- what a polygon knows
+# -- queries of a polygon
 
 
 def test_polygons_are_not_connected_where_they_touch():
@@ -181,7 +181,7 @@ def test_why_a_point_is_not_free():
     assert PolygonSpace(DIAMONDS).why_not_free((2.0, 1.2)) == 'in a hole of polygon 0'
 
 
-def test_it_gives_back_what_it_was_given_and_knows_boxes_that_it_covers():
+def test_it_keeps_its_argument_and_recognizes_boxes_that_it_covers():
     space = PolygonSpace(COMB)
     assert space.polygon is COMB
     assert space.covers_box(np.array([0.0, 0.0]), np.array([8.0, 1.0]))
