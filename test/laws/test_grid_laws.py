@@ -316,7 +316,7 @@ def test_clearance_of_a_path_is_the_least_along_it(grid, frame):
     """
     Against points every few thousandths of a cell: the least of them is above the truth.
 
-    Clearance changes by no more than the distance moved, so it is above by less than half a spacing.
+    Clearance changes by no more than the distance moved: by less than half a spacing.
     """
     occupied = GRIDS[grid]
     resolution, origin = FRAMES[frame]

@@ -273,7 +273,7 @@ def test_a_cancelled_search_ends_and_says_so():
 
 
 def test_a_search_that_only_rejects_still_hears_the_clock():
-    """A winding corridor of 23 cells in nine million: RRT's sampler hits it a few times a second."""
+    """A winding corridor of 23 cells in nine million, which RRT's sampler rarely hits."""
     blocked = np.ones((3000, 3000), dtype=bool)
     for turn in range(6):
         blocked[1500 + 2 * turn, 1500:1503] = False

@@ -1,4 +1,4 @@
-"""Motions of hundreds of thousands of steps: reduced, refused or returned, without blocking a cancellation."""
+"""Motions of hundreds of thousands of steps: reduced, refused or returned, and cancelled soon."""
 
 import math
 from test.core.trajectories.worlds import (
