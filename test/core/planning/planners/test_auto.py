@@ -103,7 +103,8 @@ def test_the_fall_back_does_not_depend_on_the_size_of_the_batches(batch: int):
 def island(size: int) -> NDArray[np.bool_]:
     """Return free cells around a block of occupied cells."""
     blocked = np.zeros((3 * size, 3 * size), dtype=bool)
-    blocked[size : 2 * size, size : 2 * size] = True
+    end = 2 * size
+    blocked[size:end, size:end] = True
     return blocked
 
 
