@@ -74,7 +74,9 @@ def attempt(
     first = FirstSolution(working_time() - began, path_length(path), path)
     if len(path) == 2 or optimizing is None:
         return Attempt(status, search, *_improved(request, number, search, path, budget), first)
-    shorter, *longer = sorted([path, *_rough_paths(request)], key=path_length)
+    none: list[Floats] = []
+    rough = budget.within(lambda: _rough_paths(request), none)
+    shorter, *longer = sorted([path, *rough], key=path_length)
     best = _improved(request, number, search, shorter, budget)
     for other in longer:
         if optimizing.stop() is None:
@@ -90,7 +92,8 @@ def _improved(
         space, rng, found = request.space, request.stream(number, SHORTEN), path
         path = budget.within(lambda: shorten(space, found, rng, budget), found)
     path = with_clearance(request, path, budget)
-    return path, path_cost(request.space, path, request.clearance)
+    cost = budget.within(lambda: path_cost(request.space, path, request.clearance), math.inf)
+    return path, cost
 
 
 def _cost(improved: tuple[Floats, float]) -> float:
@@ -141,7 +144,10 @@ def _search(
         path = _in_caller_s_frame(request, search.path)
         return path if request.space.is_path_free(path) else None
 
-    status, search, path = search_until_free(start, free_path, budget)
+    def found_by(search: PathSearch) -> Floats | None:
+        return budget.within(lambda: free_path(search), None)
+
+    status, search, path = search_until_free(start, found_by, budget)
     return status, search, np.empty((0, request.space.dim)) if path is None else path
 
 

@@ -49,7 +49,7 @@ PLANNERS = (
         'auto',
         f'{_PLANNERS}.auto',
         'Auto',
-        'hit_and_run_connect, and on a grid a flood fill where that takes long: for any request',
+        'for any request: hit_and_run_connect, and on a grid a flood fill where that takes long',
     ),
     PlannerEntry(
         'hit_and_run',
