@@ -68,7 +68,7 @@ def _lateness(n_runs: int) -> list[Lateness]:
     for name in MAPS:
         show(f'interpreted work on {name}')
         done = subprocess.run(
-            [sys.executable, '-m', 'benchmarks.interpreted.work', name, str(n_runs)],
+            [sys.executable, '-m', 'benchmarks.interpreted', name, str(n_runs)],
             env={**os.environ, VARIABLE: 'interpreted'},
             cwd=ROOT,
             stdout=subprocess.PIPE,
@@ -87,5 +87,5 @@ def _row(name: str, seconds: list[float]) -> list[str]:
 
 
 def _verdict(what: str, seconds: ArrayLike) -> Verdict:
-    late = float(np.quantile(seconds, 0.99))
+    late = float(np.quantile(np.asarray(seconds), 0.99))
     return Verdict(what, f'{1e3 * LATE:.0f} ms', f'{milliseconds(late)} ms', late <= LATE)

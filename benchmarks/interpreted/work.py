@@ -1,21 +1,15 @@
-"""
-How late interpreted work ends, as JSON: ``python -m benchmarks.interpreted.work MAP RUNS``.
-
-It is run with ``HNR_PLANNER_KERNELS=interpreted``.
-"""
+"""Work that runs interpreted, and how late it ends after a time limit and a cancellation."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import partial
-import json
-import sys
 import threading
 import time
 from typing import Any, NamedTuple
 
-from benchmarks.problems import OFFICE, ROBOT_RADIUS
+from benchmarks.problems import Floats, OFFICE, ROBOT_RADIUS
 from hnr_planner.core import ALGORITHMS, GridSpace, KINODYNAMIC_PLANNERS, plan
 from hnr_planner.core.kernels.clock import working_time
 from hnr_planner.core.planning.limits import Budget
@@ -38,6 +32,8 @@ SIDE, CLUTTER = 1000, 600
 SHORTEST, LONGEST = 0.05, 0.3
 #: Time limit [s] of work that is cancelled.
 LONG = 60.0
+#: A goal outside of the maps.
+FAR_AWAY = Pose((200.0, -100.0, 0.0))
 #: Settings of every request: the search for shorter paths goes on until the time is up.
 SETTINGS = replace(
     DEFAULTS, robot_radius=ROBOT_RADIUS['office'], goal_radius=0.3, seed=0, optimize_for=LONG
@@ -115,19 +111,19 @@ def _after_cancellation(work: Work, seconds: float, k: int) -> Iterator[float]:
     yield from (ended - then for then in due)
 
 
-def _groups(maps: MapStore, space: GridSpace, pairs: np.ndarray) -> dict[str, list[Work]]:
+def _groups(maps: MapStore, space: GridSpace, pairs: Floats) -> dict[str, list[Work]]:
     """Return the work to measure, by what it has in common."""
 
     def request(algorithm: str, limit: float, cancel: threading.Event, k: int) -> None:
-        start, goal = (Pose((*map(float, end), 0.0)) for end in pairs[k])
+        start, goal = map(_pose, pairs[k])
         settings = replace(SETTINGS, time_limit=limit, optimize_for=limit)
         asked = PlanRequest(start, goal, 0.0, algorithm)
         respond(asked, settings, maps.newest, cancel)
 
     def far_goal(limit: float, cancel: threading.Event, k: int) -> None:
         settings = replace(SETTINGS, goal_radius=0.0, time_limit=limit)
-        start, goal = Pose((*map(float, pairs[k, 0]), 0.0)), Pose((200.0, -100.0, 0.0))
-        respond(PlanRequest(start, goal, 1000.0, 'auto'), settings, maps.newest, cancel)
+        asked = PlanRequest(_pose(pairs[k, 0]), FAR_AWAY, 1000.0, 'auto')
+        respond(asked, settings, maps.newest, cancel)
 
     def draws(limit: float, cancel: threading.Event, k: int) -> None:
         settings: Settings = replace(SETTINGS, time_limit=limit, sample_count=100_000, seed=k)
@@ -140,7 +136,7 @@ def _groups(maps: MapStore, space: GridSpace, pairs: np.ndarray) -> dict[str, li
         Budget(working_time() + limit, cancel=cancel).within(lambda: call(k), None)
 
     def flooded(k: int) -> None:
-        flood(make_problem(space, *pairs[k], 0.0))
+        flood(make_problem(space, pairs[k, 0], pairs[k, 1], 0.0))
 
     loops = (flooded, lambda _: build_lattice(space.data), lambda _: build_slabs(space.data[0]))
     more = ({'alternatives': 3}, {'clearance': 0.5, 'optimize_iterations': 100})
@@ -156,11 +152,5 @@ def _groups(maps: MapStore, space: GridSpace, pairs: np.ndarray) -> dict[str, li
     }
 
 
-def main() -> None:
-    """Measure on the map of the command line, and print."""
-    name, n_runs = sys.argv[1], int(sys.argv[2])
-    json.dump(list(measure(name, n_runs)), sys.stdout)
-
-
-if __name__ == '__main__':
-    main()
+def _pose(point: Floats) -> Pose:
+    return Pose((float(point[0]), float(point[1]), 0.0))
