@@ -27,6 +27,7 @@ from hnr_planner.core.planning.planners.cones import (
     CORNER,
     DISTANCE,
     FINAL,
+    first_capacity,
     Frontier,
     N_NODES,
     N_OPEN,
