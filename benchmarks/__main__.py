@@ -17,6 +17,7 @@ from benchmarks.clearance import clearance
 from benchmarks.competitors import Competitor, lineup
 from benchmarks.every_problem import every_problem
 from benchmarks.first_path import first_path
+from benchmarks.interpreted import interpreted
 from benchmarks.kinodynamic import kinodynamic
 from benchmarks.picture import draw
 from benchmarks.pinned import on_one_core
@@ -46,6 +47,7 @@ SECTIONS: tuple[SectionOf, ...] = (
     kinodynamic,
     answers,
     properties,
+    interpreted,
     every_problem,
 )
 

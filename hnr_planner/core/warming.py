@@ -31,9 +31,11 @@ from hnr_planner.core.trajectories.registry import KINODYNAMIC_PLANNERS
 from hnr_planner.core.trajectories.request import check_kinodynamic_request
 import numpy as np
 
-#: Points [m] on both sides of a wall, so that a search is needed.
+#: Points on both sides of the wall of the small grid, so that there is something to search for.
 START, GOAL = (0.5, 0.5), (0.5, 4.5)
-#: Transitions of each search: enough to call every kernel of a search.
+#: Points in opposite corners of the grid with an island and of the winding one.
+CORNER, OTHER_CORNER = (0.5, 0.5), (2.5, 2.5)
+#: Transitions of each search: enough to need all that a search needs.
 N_ITERATIONS = 300
 
 #: Called with the number of kernels done, their total number, and the name of the last one.
@@ -121,19 +123,19 @@ def find_paths() -> None:
         for grid in (space, winding):
             plan(
                 grid,
-                START,
-                GOAL,
+                CORNER,
+                OTHER_CORNER,
                 algorithm=algorithm,
                 seed=0,
                 optimize_iterations=1,
                 time_limit=math.inf,
                 max_iterations=N_ITERATIONS,
             )
-    plan(space, START, GOAL, seed=0, alternatives=2, clearance=1.0, time_limit=math.inf)
-    flood(make_problem(space, np.array(START), np.array(GOAL), 0.0))
-    space.nearest_reachable(START, GOAL, 1.0)
-    space.clearance(START)
-    space.path_clearance([START, GOAL])
+    plan(space, CORNER, OTHER_CORNER, seed=0, alternatives=2, clearance=1.0, time_limit=math.inf)
+    flood(make_problem(space, np.array(CORNER), np.array(OTHER_CORNER), 0.0))
+    space.nearest_reachable(CORNER, OTHER_CORNER, 1.0)
+    space.clearance(CORNER)
+    space.path_clearance([CORNER, OTHER_CORNER])
 
 
 def find_motions() -> None:

@@ -19,8 +19,10 @@ from hnr_planner.core import (
     RequestError,
     TrajectoryResult,
 )
-from hnr_planner.core.kernels.clock import working_time
+from hnr_planner.core.kernels.kernel import interpreted_calls
 from hnr_planner.core.planning.escape import escape_point
+from hnr_planner.core.planning.tiers import remark_since, tier_since
+from hnr_planner.server.limits import RequestLimits
 from hnr_planner.server.map_store import MapSnapshot
 from hnr_planner.server.outcomes import Outcome, Refusal
 from hnr_planner.server.path_validity import first_blocked_pose
@@ -32,12 +34,12 @@ from hnr_planner.server.trajectories import trajectory_path
 from hnr_planner.server.waiting import NewestMap, wait_for_map
 from hnr_planner.server.waypoints import joined
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 ToFrame = Callable[[Pose, str], Pose]
 
-#: Time [s] that a search gets at least, so that it can still prove a goal unreachable.
-SHORTEST_TIME = 1e-3
+#: Time [s] that measuring the clearance of a path gets at least, even when the time is up.
+MEASURING_TIME = 0.02
 
 
 def only_same_frame(pose: Pose, frame: str) -> Pose:
@@ -76,27 +78,28 @@ def respond(
         the name of the pose.
 
     """
-    began, deadline = time.monotonic(), working_time() + settings.time_limit
+    began, before = time.monotonic(), interpreted_calls()
+    limits = RequestLimits.from_now(settings.time_limit, cancel)
     snapshot = None
     try:
         check_request(request)
         snapshot = wait_for_map(newest_map, settings.patience, cancel)
-        job = _Job(settings, newest_map, cancel, to_frame, deadline)
+        job = _Job(settings, newest_map, to_frame, limits)
         response = job.plan_for_newest_map(request, snapshot)
     except Refusal as refusal:
-        response = PlanResponse(refusal.outcome, refusal.why, request, snapshot=snapshot)
-    return replace(response, elapsed=time.monotonic() - began)
+        why = refusal.why + (remark_since(before) if limits.hold() else '')
+        response = PlanResponse(refusal.outcome, why, request, snapshot=snapshot)
+    return replace(response, elapsed=time.monotonic() - began, tier=tier_since(before))
 
 
 @dataclass(frozen=True)
 class _Job:
-    """The circumstances of one request; ``deadline`` is a time of the clock ``working_time``."""
+    """The circumstances of one request; the limits are for all of it."""
 
     settings: Settings
     newest_map: NewestMap
-    cancel: threading.Event
     to_frame: ToFrame
-    deadline: float
+    limits: RequestLimits
 
     def plan_for_newest_map(self, request: PlanRequest, snapshot: MapSnapshot) -> PlanResponse:
         """Plan on ``snapshot``, and again as long as a newer map blocks the path just found."""
@@ -108,9 +111,9 @@ class _Job:
             if not response.solved:
                 return response
             newer = self.newest_map()
-            if newer.number == snapshot.number or _is_still_free(response, newer):
+            if newer.number == snapshot.number or self._is_still_free(response, newer):
                 return self._finished(replace(response, snapshot=newer), newer)
-            if working_time() >= self.deadline:
+            if self.limits.time_is_up:
                 raise self._map_changed()
             snapshot = newer
 
@@ -127,9 +130,20 @@ class _Job:
             spacing = snapshot.occupancy.resolution
         return replace(
             response,
-            clearance=float(snapshot.space.path_clearance(path)),
+            clearance=self._clearance(path, snapshot),
             poses=pose_rows(path, spacing, response.goal_orientation),
         )
+
+    def _clearance(self, path: NDArray[np.float64], snapshot: MapSnapshot) -> float:
+        """Return the clearance of a path [m]; NaN where the limits leave no time to measure it."""
+        space = snapshot.space
+        return self.limits.within(
+            lambda: float(space.path_clearance(path)), math.nan, MEASURING_TIME
+        )
+
+    def _is_still_free(self, response: PlanResponse, newer: MapSnapshot) -> bool:
+        """Return whether a path found on one map is known to be one on a newer map."""
+        return self.limits.within(lambda: _is_still_free(response, newer), False)
 
     def _map_changed(self) -> Refusal:
         """Return the refusal for a path that a newer map has blocked."""
@@ -179,8 +193,8 @@ class _Job:
                 request.goal.point,
                 algorithm=request.algorithm,
                 goal_tolerance=request.tolerance,
-                time_limit=self._time_left(),
-                cancel=self.cancel,
+                time_limit=self.limits.time_left,
+                cancel=self.limits.cancel,
                 **self.settings.plan_arguments,
             )
         except RequestError as error:
@@ -206,9 +220,10 @@ class _Job:
         why = result.message
         missed = result.status in (PlannerStatus.INVALID_GOAL, PlannerStatus.UNREACHABLE)
         if missed and request.tolerance > 0.0:
-            nearest = snapshot.space.nearest_reachable(
-                request.start.point, goal, request.tolerance
-            )
+            with self.limits.enforced():
+                nearest = snapshot.space.nearest_reachable(
+                    request.start.point, goal, request.tolerance
+                )
             if nearest is None:
                 why += f'; nothing within {request.tolerance:g} m of it can be reached'
             else:
@@ -217,7 +232,8 @@ class _Job:
                 why = f'{result.message}; the goal was moved by {offset:.4g} m because {why}'
         outcome, trajectory = Outcome[result.status.name], result.trajectory
         if trajectory is not None:
-            path = trajectory_path(trajectory, snapshot.space, self._check_time)
+            with self.limits.enforced():
+                path = trajectory_path(trajectory, snapshot.space, self.limits.check)
             result = replace(result, path=path)
         return PlanResponse(
             outcome, why, request, result, trajectory=trajectory, snapshot=snapshot
@@ -233,25 +249,10 @@ class _Job:
             (*request.start.point, 0.0, 0.0),
             goal,
             algorithm=request.algorithm,
-            time_limit=self._time_left(),
-            cancel=self.cancel,
+            time_limit=self.limits.time_left,
+            cancel=self.limits.cancel,
             **self.settings.trajectory_arguments(request.algorithm, goal_is_moved=moved),
         )
-
-    def _time_left(self) -> float:
-        """Return the time that a search gets [s]."""
-        return max(self.deadline - working_time(), SHORTEST_TIME)
-
-    def _check_time(self) -> None:
-        """Raise Refusal (CANCELLED, TIMEOUT) when the request has to end."""
-        if self.cancel.is_set():
-            raise Refusal(Outcome.CANCELLED, 'the request was cancelled after the search')
-        if working_time() >= self.deadline:
-            raise Refusal(
-                Outcome.TIMEOUT,
-                f'the time limit of {self.settings.time_limit:g} s passed after the search, '
-                'before its trajectory was a path',
-            )
 
 
 def _is_still_free(response: PlanResponse, newer: MapSnapshot) -> bool:

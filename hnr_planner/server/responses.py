@@ -30,6 +30,9 @@ class Response(ABC):
         The same in words, with the values.
     elapsed : float
         Time from the request to this response [s].
+    tier : str
+        'compiled' when machine code did all of the work, 'interpreted' when some of it was not
+        there yet.
     snapshot : MapSnapshot, optional
         The map that the response holds for; None when there was none.
 
@@ -38,6 +41,7 @@ class Response(ABC):
     outcome: Outcome
     why: str
     elapsed: float = field(default=0.0, kw_only=True)
+    tier: str = field(default='compiled', kw_only=True)
     snapshot: MapSnapshot | None = field(default=None, kw_only=True)
 
     @property
@@ -58,7 +62,12 @@ class Response(ABC):
     @property
     def values(self) -> dict[str, str]:
         """Return what is published about the request; seconds and metres, NaN where unknown."""
-        return {'why': self.why, 'algorithm': self.algorithm, 'elapsed': f'{self.elapsed:.6f}'}
+        return {
+            'why': self.why,
+            'algorithm': self.algorithm,
+            'elapsed': f'{self.elapsed:.6f}',
+            'tier': self.tier,
+        }
 
 
 @dataclass(frozen=True)
@@ -77,7 +86,8 @@ class PlanResponse(Response):
     trajectory : Trajectory, optional
         What a robot with inertia does over time.
     clearance : float
-        Smallest distance between the path and an obstacle [m]; NaN without a path.
+        Smallest distance between the path and an obstacle [m]; NaN without a path, or where the
+        time limit left no time to measure it.
     escape : float
         Length of the first segment of the path, where that leads out of a start that is not free
         [m]; 0 where the start is free.

@@ -5,7 +5,11 @@ import threading
 import time
 
 from hnr_planner.core import Cancelled, FreeSpaceDraws, sample_free_space, SpaceError, StuckError
+from hnr_planner.core.errors import Interrupted
 from hnr_planner.core.kernels.clock import working_time
+from hnr_planner.core.kernels.interruption import interruptible
+from hnr_planner.core.kernels.kernel import interpreted_calls
+from hnr_planner.core.planning.tiers import remark_since, tier_since
 from hnr_planner.server.map_store import MapSnapshot
 from hnr_planner.server.outcomes import Outcome, Refusal
 from hnr_planner.server.responses import SampleResponse
@@ -28,15 +32,17 @@ def draw(settings: Settings, newest_map: NewestMap, cancel: threading.Event) -> 
 
     """
     began, deadline = time.monotonic(), working_time() + settings.time_limit
-    snapshot = None
+    before, snapshot = interpreted_calls(), None
     try:
         snapshot = wait_for_map(newest_map, settings.patience, cancel)
         draws = _draw(settings, snapshot, _Ending(cancel, deadline))
         why = f'{_description(settings)} by {settings.sample_walk}, seed {draws.seed}'
         response = SampleResponse(Outcome.SAMPLED, why, settings, draws, snapshot=snapshot)
     except Refusal as refusal:
-        response = SampleResponse(refusal.outcome, refusal.why, settings, snapshot=snapshot)
-    return replace(response, elapsed=time.monotonic() - began)
+        is_cut = refusal.outcome in (Outcome.TIMEOUT, Outcome.CANCELLED)
+        why = refusal.why + (remark_since(before) if is_cut else '')
+        response = SampleResponse(refusal.outcome, why, settings, snapshot=snapshot)
+    return replace(response, elapsed=time.monotonic() - began, tier=tier_since(before))
 
 
 @dataclass(frozen=True)
@@ -53,12 +59,13 @@ class _Ending:
 def _draw(settings: Settings, snapshot: MapSnapshot, ending: _Ending) -> FreeSpaceDraws:
     """Return the draws, or raise Refusal (BAD_REQUEST, CANCELLED, TIMEOUT)."""
     try:
-        return sample_free_space(snapshot.space, cancel=ending, **settings.sample_arguments)
+        with interruptible(ending.is_set):
+            return sample_free_space(snapshot.space, cancel=ending, **settings.sample_arguments)
     except SpaceError as error:
         raise Refusal(Outcome.BAD_REQUEST, f'nothing can be drawn of this map: {error}') from error
     except StuckError as error:
         raise Refusal(Outcome.BAD_REQUEST, str(error)) from error
-    except Cancelled as error:
+    except (Cancelled, Interrupted) as error:
         if ending.cancel.is_set():
             raise Refusal(Outcome.CANCELLED, 'the sampling was cancelled') from error
         raise Refusal(

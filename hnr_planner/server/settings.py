@@ -247,6 +247,8 @@ class Settings:
         arguments = {
             **self._search_arguments,
             'goal_speed': math.inf if unbounded else self.goal_speed,
+            # A trajectory that is not to be shortened cannot be optimized either.
+            'optimize_for': self.optimize_for if self.simplify else 0.0,
         }
         if samples_goal:
             return {**arguments, 'boundary': self.boundary}

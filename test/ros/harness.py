@@ -315,16 +315,25 @@ class Client:
 
     def wait_for_running(self, searches: int) -> None:
         """Wait until the node says that so many searches run, from now on."""
-        self._health.clear()
-        until(
-            lambda: searches in self._running(),
-            f'{searches} running searches',
+        self.wait_for_health(
+            lambda values: values['running'] == str(searches), f'{searches} running searches'
         )
 
-    def _running(self) -> list[int]:
-        """Return how many searches ran, from each of the node's reports of health."""
+    def wait_for_health(
+        self,
+        condition: Callable[[dict[str, str]], bool],
+        what: str,
+        timeout: float = SOON,
+    ) -> dict[str, str]:
+        """Return the values of the first report of the node's health, from now on, that fits."""
+        self._health.clear()
+        return until(
+            lambda: next(filter(condition, self._reports_of_health()), None), what, timeout
+        )
+
+    def _reports_of_health(self) -> list[dict[str, str]]:
         own = [m.status[0] for m in list(self._health) if self._planner in m.status[0].name]
-        return [int(item.value) for s in own for item in s.values if item.key == 'running']
+        return [{item.key: item.value for item in status.values} for status in own]
 
     def cancel(self) -> Trigger.Response:
         """Cancel all running searches."""

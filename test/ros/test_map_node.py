@@ -90,6 +90,19 @@ def test_broken_file_is_refused_and_the_map_stays(client: Client, files: dict[st
         assert_is(served(client), drawn(30, 40, 1))
 
 
+def test_warning_about_a_file_is_a_line_of_the_log(
+    client: Client, source: NodeProcess, files: dict[str, Path]
+) -> None:
+    twice = files['first'].with_name('twice.yaml')
+    twice.write_text(files['first'].read_text() + 'resolution: 9.0\n')
+    (answer,) = client.set_parameters('/map_source', yaml_filename=str(twice))
+    assert answer.successful, answer.reason
+    (line,) = [line for line in source.log.splitlines() if 'occurs repeatedly' in line]
+    assert '[WARN]' in line and 'twice.yaml: the key resolution' in line
+    assert 'MapFileWarning' not in source.log
+    assert_is(served(client), drawn(30, 40, 1))
+
+
 def test_file_and_frame_change_while_running(client: Client, files: dict[str, Path]) -> None:
     heard = client.listen(OccupancyGrid, '/map')
     (answer,) = client.set_parameters('/map_source', yaml_filename=str(files['second']))

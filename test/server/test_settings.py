@@ -5,6 +5,7 @@ import math
 from pathlib import Path
 from typing import Any
 
+from hnr_planner.core import KINODYNAMIC_PLANNERS
 from hnr_planner.server.rules import SettingsError
 from hnr_planner.server.settings import DEFAULTS, RULES, Settings
 import pytest
@@ -90,6 +91,15 @@ def test_aliases_may_be_none() -> None:
 def test_first_map_is_awaited_within_the_time_limit() -> None:
     assert Settings(map_wait=5.0, time_limit=0.5).patience == 0.5
     assert Settings(map_wait=0.2, time_limit=0.5).patience == 0.2
+
+
+def test_trajectory_that_is_not_shortened_is_not_optimized_either() -> None:
+    for algorithm in KINODYNAMIC_PLANNERS:
+        arguments = Settings(simplify=False).trajectory_arguments(algorithm, goal_is_moved=False)
+        assert (arguments['simplify'], arguments['optimize_for']) == (False, 0.0)
+        arguments = Settings().trajectory_arguments(algorithm, goal_is_moved=False)
+        assert arguments['optimize_for'] == Settings().optimize_for > 0.0
+    assert Settings(simplify=False).plan_arguments['optimize_for'] > 0.0
 
 
 def test_no_seed_and_no_limit_reach_the_planner_as_none() -> None:

@@ -31,7 +31,8 @@ _log = logging.getLogger('hnr_planner')
 class Status(NamedTuple):
     """How far compilation in the background is, in this process."""
 
-    #: ``'compiled'``, or ``'interpreted'`` while something that was asked for is not there.
+    #: ``'compiled'``, or ``'interpreted'`` while something that was asked for is not there, or
+    #: where nothing is ever compiled.
     tier: str
     #: Number of kernels, each for one signature, that have arrived.
     compiled: int
@@ -39,7 +40,7 @@ class Status(NamedTuple):
     pending: int
     #: Number of those that will not come in this process.
     failed: int
-    #: Time [s] that the child has worked.
+    #: Time [s] that the child has worked, without its wait for more.
     elapsed: float
     #: Whether the child is running.
     running: bool
@@ -77,6 +78,8 @@ class _Background:
         #: Time [s] that children have worked, and when the present one was started.
         self.worked = 0.0
         self.started = 0.0
+        #: When the present child was started, or its last notice came: it ends some time later.
+        self.heard = 0.0
         self.process: subprocess.Popen[bytes] | None = None
         self.messages: queue.SimpleQueue[Need | Workload | None] = queue.SimpleQueue()
         #: Number of notices of the present child.
@@ -92,7 +95,7 @@ class _Background:
                 self.messages.put(message)
                 return
             self.is_running = True
-            self.started = time.monotonic()
+            self.started = self.heard = time.monotonic()
             thread = threading.Thread(target=self.run, name='kernel compilation', daemon=True)
             thread.start()
 
@@ -108,7 +111,7 @@ class _Background:
                 is_left = bool(self.asked or self.general or self.workloads)
                 if is_left and code == 0 and self.notices:  # it was about to end for want of work
                     continue
-                self.worked += time.monotonic() - self.started
+                self.worked += self.heard - self.started
                 self.is_running = False
                 if self.is_ending:
                     return
@@ -172,6 +175,7 @@ class _Background:
     def take(self, notice: Notice) -> None:
         """Take note of what the child says; load what it has made."""
         self.notices += 1
+        self.heard = time.monotonic()
         if isinstance(notice.about, list):
             with self.lock:
                 self.general |= dict.fromkeys(notice.about)
@@ -256,8 +260,12 @@ def status() -> Status:
     """Return how far compilation in the background is."""
     with _background.lock:
         pending = len(_background.asked) + len(_background.general)
-        is_compiled = not (pending or _background.failed or _background.workloads)
-        running_for = time.monotonic() - _background.started if _background.is_running else 0.0
+        is_waiting = pending > 0 or bool(_background.workloads)
+        is_compiled = not (is_waiting or _background.failed or mode() is Mode.INTERPRETED)
+        running_for = 0.0
+        if _background.is_running:
+            until = time.monotonic() if is_waiting else _background.heard
+            running_for = until - _background.started
         return Status(
             tier='compiled' if is_compiled else 'interpreted',
             compiled=_background.compiled,

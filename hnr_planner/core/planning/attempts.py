@@ -20,6 +20,7 @@ from hnr_planner.core.planning.postprocessing.clearance import increase_clearanc
 from hnr_planner.core.planning.postprocessing.simplify import shorten
 from hnr_planner.core.planning.request import Request
 from hnr_planner.core.planning.result import FirstSolution, PlannerStatus
+from hnr_planner.core.spaces.grid.grid_space import GridSpace
 import numpy as np
 
 SearchType = TypeVar('SearchType', bound=Search)
@@ -76,7 +77,7 @@ def attempt(
     Search once and improve the path that was found.
 
     With a budget for ``optimizing`` the planner ``auto`` looks for the shortest path as well,
-    where the space has slabs. A planner that was asked for by name is improved by itself alone.
+    on a grid. A planner that was asked for by name is improved by itself alone.
     """
     status, search, path = _search(request, number, budget)
     planner = getattr(search, 'made_by', request.planner.name)
@@ -109,7 +110,8 @@ def _improved(
 def _with_cost(request: Request, path: Floats, budget: Budget) -> tuple[Floats, float]:
     """Return a path (m, dim) moved away from walls as was asked, and its cost."""
     path = with_clearance(request, path, budget)
-    return path, path_cost(request.space, path, request.clearance)
+    cost = budget.within(lambda: path_cost(request.space, path, request.clearance), math.inf)
+    return path, cost
 
 
 def optimize(
@@ -158,7 +160,10 @@ def _search(
         path = _in_caller_s_frame(request, search.path)
         return path if request.space.is_path_free(path) else None
 
-    status, search, path = search_until_free(start, free_path, budget)
+    def found_by(search: PathSearch) -> Floats | None:
+        return budget.within(lambda: free_path(search), None)
+
+    status, search, path = search_until_free(start, found_by, budget)
     return status, search, np.empty((0, request.space.dim)) if path is None else path
 
 
@@ -219,9 +224,9 @@ def _lower_bound(request: Request, search: PathSearch) -> float:
 def _shortest_path(request: Request, budget: Budget) -> tuple[Floats | None, float]:
     """Return the shortest path (m, 2), None where it is not found in time, and a lower bound."""
     space = request.space
-    if space.slabs is None or request.goal_radius > 0.0:
+    if not isinstance(space, GridSpace) or request.goal_radius > 0.0:
         return None, straight_length(request)
-    search = Polyanya(space.slabs).start(request.problem, request.stream(0))
+    search = Polyanya(space).start(request.problem, request.stream(0))
     status = run(search, budget)
     bound = _lower_bound(request, search)
     if status is not PlannerStatus.SOLVED:

@@ -12,6 +12,7 @@ from typing import Any
 from hnr_planner.core.cancellation import Event
 from hnr_planner.core.errors import RequestError
 from hnr_planner.core.kernels.clock import working_time
+from hnr_planner.core.kernels.kernel import interpreted_calls
 from hnr_planner.core.lengths import path_length
 from hnr_planner.core.planning.alternatives.alternatives import (
     check_alternatives,
@@ -25,7 +26,7 @@ from hnr_planner.core.planning.attempts import (
     straight_length,
     with_clearance,
 )
-from hnr_planner.core.planning.ends import check_allowance, move_ends
+from hnr_planner.core.planning.ends import Allowance, check_allowance, move_ends, MovedRequest
 from hnr_planner.core.planning.limits import Budget
 from hnr_planner.core.planning.planner import Planner, Work
 from hnr_planner.core.planning.request import (
@@ -35,6 +36,7 @@ from hnr_planner.core.planning.request import (
     Request,
 )
 from hnr_planner.core.planning.result import FirstSolution, PlannerStatus, PlanResult
+from hnr_planner.core.planning.tiers import with_remark
 from hnr_planner.core.spaces.space import Space
 import numpy as np
 from numpy.typing import ArrayLike
@@ -149,9 +151,9 @@ def plan(
     n_paths = check_alternatives(space, alternatives, request.simplify)
     allowance = check_allowance(space, goal_tolerance, start_escape)
 
-    began = working_time()
+    began, before = working_time(), interpreted_calls()
     budget = effort.budget(began)
-    moved = move_ends(request, allowance)
+    moved = _move_ends_within(budget, request, allowance)
     request = moved.request
     if moved.outcome is not None:
         result = _result_without_search(request, *moved.outcome, budget, began)
@@ -163,7 +165,7 @@ def plan(
             lambda: with_alternatives(request, found, n_paths, budget, began),
             replace(found, cut_by_time=True),
         )
-    return moved.restore_ends(result)
+    return with_remark(moved.restore_ends(result), before)
 
 
 def _refuse_trajectories(settings: dict[str, Any]) -> None:
@@ -173,6 +175,15 @@ def _refuse_trajectories(settings: dict[str, Any]) -> None:
                 f'plan takes no {name}: a trajectory of a system is planned by '
                 f'plan_trajectory(space, system, start, goal, ...)'
             )
+
+
+def _move_ends_within(budget: Budget, request: Request, allowance: Allowance) -> MovedRequest:
+    """Move the ends of a request where that is needed; fail where a limit interrupts it."""
+    moved = budget.within(lambda: move_ends(request, allowance), None)
+    if moved is not None:
+        return moved
+    status = budget.stop() or PlannerStatus.TIMEOUT
+    return MovedRequest(request, (status, status.value), request.start)
 
 
 def _result_of_search(

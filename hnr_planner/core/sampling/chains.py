@@ -246,8 +246,11 @@ def walk_on(
     def run(k: int) -> None:
         run_chain(space, compiled, after.chain(k), thin, draws[k])
 
-    with ThreadPoolExecutor() as pool:
-        list(pool.map(run, range(len(draws))))
+    if len(draws) == 1:
+        run(0)  # in this thread, and so in the mode that it has chosen for its kernels
+    else:
+        with ThreadPoolExecutor() as pool:
+            list(pool.map(run, range(len(draws))))
     return space.from_kernel(draws), after
 
 

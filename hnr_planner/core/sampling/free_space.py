@@ -129,8 +129,11 @@ def sample_free_space(
                 run_chain(space, compiled, state, thin, later[rows])
             points[chain, draws[1:]] = later
 
-    with ThreadPoolExecutor() as pool:
-        list(pool.map(fill, range(n_chains)))
+    if n_chains == 1:  # in the caller's thread, which may be one that interrupts kernels
+        fill(0)
+    else:
+        with ThreadPoolExecutor() as pool:
+            list(pool.map(fill, range(n_chains)))
     return FreeSpaceDraws(space.from_kernel(points), components, seed)
 
 

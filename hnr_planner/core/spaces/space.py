@@ -193,11 +193,6 @@ class Space(ABC):
         return None
 
     @property
-    def slabs(self) -> Any:
-        """Free space as slabs, for exact shortest paths; None for a space that is no grid."""
-        return None
-
-    @property
     def island_points(self) -> Floats | None:
         """A point (k, dim) in each obstacle with free space all around, kernel frame; or None."""
         return None

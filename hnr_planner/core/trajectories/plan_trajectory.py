@@ -10,9 +10,11 @@ from typing import Any
 
 from hnr_planner.core.cancellation import Event
 from hnr_planner.core.kernels.clock import working_time
+from hnr_planner.core.kernels.kernel import interpreted_calls
 from hnr_planner.core.planning.limits import Budget
 from hnr_planner.core.planning.request import check_effort, Effort
 from hnr_planner.core.planning.result import FirstSolution, PlannerStatus
+from hnr_planner.core.planning.tiers import with_remark
 from hnr_planner.core.spaces.space import Space
 from hnr_planner.core.systems.system import System
 from hnr_planner.core.systems.trajectory import Trajectory
@@ -130,7 +132,7 @@ def plan_trajectory(
     )
     check_optimization(request, effort)
 
-    began = working_time()
+    began, before = working_time(), interpreted_calls()
     budget = effort.budget(began)
     interrupted: tuple[PlannerStatus, str] | None = PlannerStatus.TIMEOUT, ''
     known = budget.within(lambda: outcome_before_search(request), interrupted)
@@ -138,8 +140,10 @@ def plan_trajectory(
         status = budget.stop() or PlannerStatus.TIMEOUT
         known = status, status.value
     if known is not None:
-        return _result(request, *known, _stay(request, known[0]), budget, began)
-    return _result_of_search(request, effort, budget, began)
+        result = _result(request, *known, _stay(request, known[0]), budget, began)
+    else:
+        result = _result_of_search(request, effort, budget, began)
+    return with_remark(result, before)
 
 
 def _stay(request: KinodynamicRequest, status: PlannerStatus) -> Trajectory | None:

@@ -3,6 +3,7 @@
 from collections.abc import Callable
 
 from diagnostic_msgs.msg import DiagnosticArray
+from hnr_planner.core.kernels.compilation import status
 from hnr_planner.ros.interfaces.request_server import RequestServer
 from hnr_planner.ros.map.map_input import MapInput
 from hnr_planner.ros.messages.outcomes import health_message
@@ -52,7 +53,7 @@ class Health:
             ready, state, values = False, f'{refusal.outcome.name}: {refusal.why}', {}
         name = f'{self._node.get_fully_qualified_name()}: planner'
         stamp = self._node.get_clock().now().to_msg()
-        values |= self._request_values()
+        values |= self._request_values() | _compilation_values()
         self._publisher.publish(health_message(ready, name, state, values, stamp))
 
     def _map_values(self) -> dict[str, str]:
@@ -69,3 +70,15 @@ class Health:
             'time_median': f'{summary.median:.6f}',
             'time_p95': f'{summary.p95:.6f}',
         } | {outcome.name: str(count) for outcome, count in summary.outcomes.items()}
+
+
+def _compilation_values() -> dict[str, str]:
+    """Return which tier serves, and how far compilation in the background is."""
+    progress = status()
+    return {
+        'tier': progress.tier,
+        'kernels_compiled': str(progress.compiled),
+        'kernels_pending': str(progress.pending),
+        'kernels_failed': str(progress.failed),
+        'compilation_time': f'{progress.elapsed:.1f}',
+    }

@@ -4,12 +4,14 @@ from collections.abc import Sequence
 from dataclasses import replace
 import sys
 from typing import NoReturn
+import warnings
 
-from hnr_planner.maps import load_map, MapFileError
+from hnr_planner.maps import load_map, MapFileError, MapFileWarning, OccupancyMap
 from hnr_planner.ros.interfaces.publisher import latched
 from hnr_planner.ros.messages.maps import message_from_map
 from hnr_planner.ros.node.parameters import warn_of_unknown_parameters
 from hnr_planner.ros.node.process import run
+from hnr_planner.server.request_log import shortened
 from nav_msgs.msg import OccupancyGrid
 from nav_msgs.srv import GetMap
 from rcl_interfaces.msg import ParameterDescriptor, SetParametersResult
@@ -58,9 +60,19 @@ class MapSource(Node):
         filename = wanted['yaml_filename']
         if not filename:
             raise MapFileError('the parameter yaml_filename is empty: no map file is given')
-        occupancy = replace(load_map(filename), frame=wanted['frame_id'])
+        occupancy = replace(self._read(filename), frame=wanted['frame_id'])
         self.get_logger().info(f'loaded {filename}: {occupancy}')
         return message_from_map(occupancy, self.get_clock().now().to_msg())
+
+    def _read(self, filename: str) -> OccupancyMap:
+        """Return the map of a file, or raise MapFileError; the log has what is warned about."""
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter('ignore')
+            warnings.simplefilter('always', MapFileWarning)
+            occupancy = load_map(filename)
+        for warning in caught:
+            self.get_logger().warning(shortened(str(warning.message)))
+        return occupancy
 
     def _publish(self) -> None:
         self._publisher.publish(self._message)

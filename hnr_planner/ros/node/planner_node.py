@@ -7,20 +7,16 @@ import sys
 import time
 from typing import NoReturn
 
-from hnr_planner.core.kernels.compilation import status
 from hnr_planner.core.warming import compile_in_background
 from hnr_planner.ros.node.help import help_text
+from hnr_planner.ros.node.package_log import forward_package_log
 from hnr_planner.ros.node.planner import PlannerNode, SERVICES, THREADS
 from hnr_planner.ros.node.process import run
 from hnr_planner.server.request_log import shortened
-from rclpy.clock import Clock, ClockType
 from rclpy.impl.rcutils_logger import RcutilsLogger
 
 #: Name of the node.
 NAME = 'hnr_planner'
-
-#: Seconds between the lines about a compilation that goes on.
-PROGRESS_EVERY = 10.0
 
 
 def main(arguments: Sequence[str] | None = None) -> NoReturn:
@@ -47,7 +43,6 @@ def _make_node() -> PlannerNode:
     ready = f'ready after {_process_age():.1f} s, {node.state}'
     radius = f'robot radius {node.settings.robot_radius:g} m'
     node.get_logger().info(shortened(f'{ready}, {radius}: {services}'))
-    _log_progress(node)
     return node
 
 
@@ -62,28 +57,8 @@ def _process_age() -> float:
 def _prepare(logger: RcutilsLogger) -> None:
     """Load what requests need; what is not in the cache is compiled while they run."""
     logger.info('preparing')
+    forward_package_log(logger)
     compile_in_background()
-
-
-def _log_progress(node: PlannerNode) -> None:
-    """Log every few seconds how far the compilation is, while there is one."""
-    was_compiling = False
-
-    def log() -> None:
-        nonlocal was_compiling
-        progress = status()
-        if progress.pending:
-            was_compiling = True
-            total = progress.compiled + progress.pending
-            node.get_logger().info(
-                f'still compiling, {progress.compiled} of {total} kernels: what has none yet runs '
-                'interpreted, and slower'
-            )
-        elif was_compiling:
-            was_compiling = False
-            node.get_logger().info(f'{progress}, after {_process_age():.0f} s')
-
-    node.create_timer(PROGRESS_EVERY, log, clock=Clock(clock_type=ClockType.STEADY_TIME))
 
 
 if __name__ == '__main__':

@@ -36,7 +36,8 @@ from hnr_planner.core.planning.planners.cones import (
     open_frontier,
     PARENT,
 )
-from hnr_planner.core.spaces.grid.slabs import OFF_LINE, slab_at, Slabs
+from hnr_planner.core.spaces.grid.grid_space import GridSpace
+from hnr_planner.core.spaces.grid.slabs import OFF_LINE, slab_at
 from hnr_planner.core.spaces.primitives import first_exit
 from hnr_planner.core.spaces.space import Space
 from hnr_planner.core.trees import rows_to
@@ -56,25 +57,25 @@ class Polyanya:
 
     Attributes
     ----------
-    slabs : Slabs, optional
-        Free space of the grid; ``for_space`` sets it from a space.
+    space : GridSpace, optional
+        The space whose slabs are searched; ``for_space`` sets it.
 
     """
 
-    slabs: Slabs | None = field(default=None, repr=False)
+    space: GridSpace | None = field(default=None, repr=False)
     name: ClassVar[str] = 'polyanya'
 
     def for_space(self, space: Space) -> 'Polyanya':
         """Return the planner for a space, or raise RequestError where that has no slabs."""
-        if space.slabs is None:
+        if not isinstance(space, GridSpace):
             raise RequestError(f'polyanya plans in a GridSpace, got a {type(space).__name__}')
-        return replace(self, slabs=space.slabs)
+        return replace(self, space=space)
 
     def start(self, problem: Problem, rng: Stream) -> 'PolyanyaSearch':
-        """Start at the problem's start; RequestError for a planner without slabs."""
-        if self.slabs is None:
-            raise RequestError('Polyanya has no slabs yet: plan puts in those of its space')
-        return PolyanyaSearch(problem, self.slabs)
+        """Start at the problem's start; RequestError for a planner without a space."""
+        if self.space is None:
+            raise RequestError('Polyanya has no space yet: plan puts in that of its request')
+        return PolyanyaSearch(problem, self.space)
 
 
 @dataclass
@@ -82,21 +83,23 @@ class PolyanyaSearch:
     """
     A running search; a transition is the expansion of one cone.
 
-    ``samples`` are the start and the corners at which shortest paths from it bend.
+    ``samples`` are the start and the corners at which shortest paths from it bend. The slabs and
+    the first cones are made by the first ``advance``: on a large grid that takes seconds while it
+    runs interpreted, and only there can a limit interrupt it.
     """
 
     problem: Problem
-    slabs: Slabs
+    space: GridSpace
     iterations: int = field(init=False, default=0)
     taut: ClassVar[bool] = True
     _start: Floats = field(init=False)
     _goal: Floats = field(init=False)
     _frontier: Frontier = field(init=False)
+    _is_open: bool = field(init=False, default=False)
 
     def __post_init__(self) -> None:
         self._start, self._goal = _off_lines(self.problem.start), _off_lines(self.problem.goal)
-        capacity = max(INITIAL_CAPACITY, first_capacity(self.slabs, self._start))
-        self._frontier = open_frontier(self.slabs, self._start, self._goal, capacity)
+        self._frontier = _frontier_at(self._start)
 
     @property
     def solved(self) -> bool:
@@ -106,6 +109,8 @@ class PolyanyaSearch:
     @property
     def lower_bound(self) -> float:
         """Lower bound on the length of paths, kernel frame; the least length when solved."""
+        if not self._is_open:
+            return math.dist(self._start, self._goal)
         if self._frontier.sizes[N_OPEN] == 0:
             return math.inf
         return float(self._frontier.estimates[0])
@@ -132,20 +137,23 @@ class PolyanyaSearch:
         frontier, problem = self._frontier, self.problem
         rows = rows_to(self.parents, int(frontier.sizes[FINAL]))
         corners = frontier.vertices[rows[1:], CORNER].astype(np.int64)
-        steps = self.slabs.steps.reshape(-1, 2)[corners]
+        steps = self.space.slabs.steps.reshape(-1, 2)[corners]
         bends = frontier.vertices[rows[1:], :DISTANCE] + problem.margin * steps
         points = np.vstack([problem.start, bends, problem.goal])
         return step_aside(problem.space, points, problem.margin)
 
     def advance(self, n_iterations: int) -> None:
         """Expand at most ``n_iterations`` cones, fewer once solved or when all are expanded."""
-        goal_slab = slab_at(self.slabs, *self._goal)
+        slabs = self.space.slabs
+        if not self._is_open:
+            capacity = max(INITIAL_CAPACITY, first_capacity(slabs, self._start))
+            self._frontier = open_frontier(slabs, self._start, self._goal, capacity)
+            self._is_open = True
+        goal_slab = slab_at(slabs, *self._goal)
         end = self.iterations + n_iterations
         while self.iterations < end and not self.solved:
             before = self.iterations
-            self.iterations += expand(
-                self.slabs, self._frontier, self._goal, goal_slab, end - before
-            )
+            self.iterations += expand(slabs, self._frontier, self._goal, goal_slab, end - before)
             exhausted = self._frontier.sizes[N_OPEN] == 0
             if self.solved or exhausted or self.iterations == end:
                 break
@@ -160,6 +168,14 @@ class PolyanyaSearch:
             estimates=with_capacity(frontier.estimates, rows),
             heap=with_capacity(frontier.heap, rows),
         )
+
+
+def _frontier_at(start: Floats) -> Frontier:
+    """Return the state of a search that has no cones yet, only the start (2,) as its vertex."""
+    vertex = np.array([[*start, 0.0, NONE, NONE]])
+    nodes, nothing, rows = np.empty((0, 7)), np.empty(0), np.empty(0, dtype=np.int64)
+    sizes = np.array([0, 1, 0, NONE])
+    return Frontier(nodes, vertex, nothing, rows, nothing, np.empty(0, dtype=np.bool_), sizes)
 
 
 def _off_lines(point: Floats) -> Floats:
