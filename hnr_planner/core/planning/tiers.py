@@ -1,4 +1,4 @@
-"""The tier of a request: whether machine code did all of it, and what results say if not."""
+"""The tier of a request: whether machine code did all of it, and a remark in the result if not."""
 
 from dataclasses import replace
 from typing import TypeVar
