@@ -53,7 +53,7 @@ class Attempt(NamedTuple):
     planner : str
         Name of the planner that made the path.
     lower_bound : float
-        Length that no free path falls below, caller's units.
+        Lower bound on the length of free paths, caller's units.
 
     """
 
@@ -76,8 +76,8 @@ def attempt(
     """
     Search once and improve the path that was found.
 
-    With a budget for ``optimizing`` the planner ``auto`` looks for the shortest path as well,
-    on a grid. A planner that was asked for by name is improved by itself alone.
+    With a budget for ``optimizing`` the planner ``auto`` also searches for the shortest path on a
+    grid. Any other planner is improved by further searches of itself only.
     """
     status, search, path = _search(request, number, budget)
     planner = getattr(search, 'made_by', request.planner.name)
@@ -108,7 +108,7 @@ def _improved(
 
 
 def _with_cost(request: Request, path: Floats, budget: Budget) -> tuple[Floats, float]:
-    """Return a path (m, dim) moved away from walls as was asked, and its cost."""
+    """Return a path (m, dim) moved away from walls as requested, and its cost."""
     path = with_clearance(request, path, budget)
     cost = budget.within(lambda: path_cost(request.space, path, request.clearance), math.inf)
     return path, cost
