@@ -128,7 +128,7 @@ def _yaw(space: Space) -> float:
 @move.register(CarData)
 @kernel
 def _move(system, state, control, duration, end):
-    """Move along an arc."""
+    """Write the state (4,) after a duration [s] along an arc."""
     arc_length = duration * (state[SPEED] + duration * control[0] / 2.0)
     arc = Arc(state[:HEADING], state[HEADING], control[1])
     x, y = at(coordinate(arc, 0), arc_length), at(coordinate(arc, 1), arc_length)
@@ -195,7 +195,7 @@ def _steer(system, state, position, velocity, weight, duration, control):
 @brake.register(CarData)
 @kernel
 def _brake(system, state, control):
-    """Brake along the heading."""
+    """Write the control (2,) that brakes along the heading; return the time to rest [s]."""
     control[0] = -math.copysign(system.max_acceleration, state[SPEED])
     control[1] = 0.0
     return abs(state[SPEED]) / system.max_acceleration
@@ -204,13 +204,13 @@ def _brake(system, state, control):
 @halt.register(CarData)
 @kernel
 def _halt(system, state):
-    """Set the speed to 0."""
+    """Set the speed of a state (4,) to 0."""
     state[SPEED] = 0.0
 
 
 @velocity.register(CarData)
 @kernel
 def _velocity(system, state, out):
-    """Write the speed along the heading as a vector (2,)."""
+    """Write the velocity (2,) of a state (4,): its speed along its heading."""
     out[0] = state[SPEED] * math.cos(state[HEADING])
     out[1] = state[SPEED] * math.sin(state[HEADING])

@@ -141,7 +141,7 @@ def _lengths(states, controls, durations):
 @move.register(DoubleIntegratorData)
 @kernel
 def _move(system, state, control, duration, end):
-    """Move along a parabola."""
+    """Write the state (2 dim,) after a duration [s] along a parabola."""
     dim = len(control)
     for i in range(dim):
         change = control[i] * duration
@@ -240,7 +240,7 @@ def _speed_after(velocity, duration, control):
 @brake.register(DoubleIntegratorData)
 @kernel
 def _brake(system, state, control):
-    """Accelerate against the velocity."""
+    """Write the acceleration (dim,) against the velocity; return the time to rest [s]."""
     dim = len(control)
     speed = norm(state[dim:])
     for i in range(dim):
@@ -251,7 +251,7 @@ def _brake(system, state, control):
 @halt.register(DoubleIntegratorData)
 @kernel
 def _halt(system, state):
-    """Set the velocity to 0."""
+    """Set the velocity of a state (2 dim,) to 0."""
     half = len(state) // 2
     state[half:] = 0.0
 
@@ -259,6 +259,6 @@ def _halt(system, state):
 @velocity.register(DoubleIntegratorData)
 @kernel
 def _velocity(system, state, out):
-    """Write the velocity (dim,)."""
+    """Write the velocity (dim,) of a state (2 dim,)."""
     for i in range(len(out)):
         out[i] = state[len(out) + i]
