@@ -100,7 +100,7 @@ def test_lists_and_other_integers_are_maps_too():
 
 def test_a_cell_costs_at_most_twelve_bytes():
     space = GridSpace.from_blocked(maps.speckle(1000, 1000, 0.1, seed=1))
-    arrays = [space.data.free_distance, space._wall_distance, space.data.labels]
+    arrays = [space.data.free_distance, space.walls, space.data.labels]
     assert sum(array.nbytes for array in arrays) <= 12 * 1000 * 1000
 
 
