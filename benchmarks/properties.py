@@ -82,7 +82,7 @@ def _readiness(n_repeats: int) -> Iterator[Verdict]:
         )
     cv2.setNumThreads(threads)
     space = GridSpace.from_occupancy(data, 0.05)
-    arrays = (*space.data, space._wall_distance)
+    arrays = (*space.data, space.walls)
     n_bytes = sum(array.nbytes for array in arrays) / data.size
     measured = f'{n_bytes:.1f}'
     yield Verdict('memory of a ready map', '12 bytes a cell', measured, n_bytes <= 12.0)
