@@ -30,9 +30,8 @@ LATE = 0.05
 EXPLAINED = """\
 Nothing is compiled here: every kernel runs as Python. Each kind of work is given up to 0.3 s, or
 is cancelled after as long; the table has the time from then to its return, in milliseconds, for
-those runs that were not done by themselves. The longest are first calls, which make the
-interpreted form of their kernels. Other services are called while searches run in the same node,
-from another process."""
+those runs that were not done by themselves. Other services are called while searches run in the
+same node, from another process."""
 
 
 def interpreted(bench: Bench) -> Section:
@@ -57,6 +56,7 @@ def interpreted(bench: Bench) -> Section:
         verdicts += [
             _verdict(f'interpreted: call of another service, {what}, p99', wait)
             for what, wait in waits.items()
+            if what.endswith('1 search')
         ]
     words = table('what | runs | p50 | p99 | longest', rows)
     return Section('While nothing is compiled', f'{EXPLAINED}\n\n{words}{missing}', verdicts)

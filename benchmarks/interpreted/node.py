@@ -9,10 +9,15 @@ from pathlib import Path
 import tempfile
 from test.ros.domain import own_domain
 from test.ros.harness import Client, grid_message, maze, node_process, pose, result_of
+import threading
 import time
+from typing import Any
 
 from hnr_planner.core.kernels.modes import VARIABLE
+from rcl_interfaces.srv import GetParameters
 
+#: The service that is called.
+PARAMETERS = '/hnr_planner/get_parameters'
 #: Searches that run meanwhile.
 SEARCHES = (1, 4)
 #: Time limit [s] of the searches: longer than all calls take.
@@ -25,15 +30,16 @@ def latencies(n_calls: int) -> dict[str, list[float]]:
     """Return how long calls took [s], by what was called and how many searches ran meanwhile."""
     found = {}
     with _node() as client:
-        calls: dict[str, Callable[[], object]] = {
-            'parameters': lambda: client.get_parameters('time_limit'),
-            'a path that needs no search': lambda: client.plan(START, START),
+        parameter = GetParameters.Request(names=['time_limit'])
+        calls: dict[str, Callable[[], Any]] = {
+            'parameters': lambda: client.send(GetParameters, PARAMETERS, parameter),
+            'a path that needs no search': lambda: client.send_plan(START, START),
         }
         for n_searches in SEARCHES:
             futures = [client.send_plan(START, GOAL, 'plan_rrt') for _ in range(n_searches)]
             client.wait_for_running(n_searches)
             for name, call in calls.items():
-                call()
+                _timed(call)
                 words = f'{name}, {n_searches} search{"es" if n_searches > 1 else ""}'
                 found[words] = [_timed(call) for _ in range(n_calls)]
             assert not any(future.done() for future in futures)
@@ -63,7 +69,10 @@ def _node() -> Iterator[Client]:
                 client.close()
 
 
-def _timed(call: Callable[[], object]) -> float:
+def _timed(send: Callable[[], Any]) -> float:
+    """Send a request and return how long its response took [s]."""
+    done = threading.Event()
     began = time.perf_counter()
-    call()
+    send().add_done_callback(lambda _: done.set())
+    assert done.wait(LONG), 'no response'
     return time.perf_counter() - began

@@ -15,7 +15,7 @@ from hnr_planner.core.kernels.clock import working_time
 from hnr_planner.core.planning.limits import Budget
 from hnr_planner.core.planning.planner import make_problem
 from hnr_planner.core.planning.planners.auto import flood
-from hnr_planner.core.spaces.grid.lattice import build_lattice
+from hnr_planner.core.spaces.grid.components import nearest_in_component
 from hnr_planner.core.spaces.grid.slabs import build_slabs
 from hnr_planner.experiments.requests import far_pairs
 from hnr_planner.maps import load_map, OccupancyMap
@@ -138,7 +138,10 @@ def _groups(maps: MapStore, space: GridSpace, pairs: Floats) -> dict[str, list[W
     def flooded(k: int) -> None:
         flood(make_problem(space, pairs[k, 0], pairs[k, 1], 0.0))
 
-    loops = (flooded, lambda _: build_lattice(space.data), lambda _: build_slabs(space.data[0]))
+    def nearest(_k: int) -> None:
+        nearest_in_component(space.data.labels, 1, np.array(FAR_AWAY.point), space.margin)
+
+    loops = (flooded, nearest, lambda _: build_slabs(space.data.free_distance))
     more = ({'alternatives': 3}, {'clearance': 0.5, 'optimize_iterations': 100})
     return {
         'paths': [
@@ -148,7 +151,7 @@ def _groups(maps: MapStore, space: GridSpace, pairs: Floats) -> dict[str, list[W
         ],
         'motions': [partial(request, name) for name in KINODYNAMIC_PLANNERS],
         'draws': [draws],
-        'flood fill, lattice, slabs': [partial(kernel, loop) for loop in loops],
+        'flood fill, nearest point, slabs': [partial(kernel, loop) for loop in loops],
     }
 
 

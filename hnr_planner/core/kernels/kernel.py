@@ -167,8 +167,7 @@ class Kernel(CPUDispatcher):
     @cached_property
     def interpreted_form(self) -> Callable[..., Any]:
         """The interpreted form, for other interpreted forms to call."""
-        with not_working():
-            return interpreted_form(self.py_func)  # type: ignore[arg-type]
+        return interpreted_form(self.py_func)  # type: ignore[arg-type]
 
     def interpreted(self, *arguments: Any, **_keywords: Any) -> Any:
         """Run the interpreted form, and return what machine code would."""

@@ -231,5 +231,9 @@ def _shortest_path(request: Request, budget: Budget) -> tuple[Floats | None, flo
     bound = _lower_bound(request, search)
     if status is not PlannerStatus.SOLVED:
         return None, bound
-    path = _in_caller_s_frame(request, search.path)
-    return (path if space.is_path_free(path) else None), bound
+
+    def free_path() -> Floats | None:
+        path = _in_caller_s_frame(request, search.path)
+        return path if space.is_path_free(path) else None
+
+    return budget.within(free_path, None), bound

@@ -15,6 +15,11 @@ from hnr_planner.ros.node.process import run
 from hnr_planner.server.request_log import shortened
 from rclpy.impl.rcutils_logger import RcutilsLogger
 
+#: How long [s] a thread of Python runs while others wait. Searches that run interpreted take all
+#: the time there is, and a service is served by several threads after each other: by Python's own
+#: 5 ms, four searches would hold up each of them by 20 ms.
+SWITCH_INTERVAL = 5e-4
+
 #: Name of the node.
 NAME = 'hnr_planner'
 
@@ -24,6 +29,7 @@ def main(arguments: Sequence[str] | None = None) -> NoReturn:
     if {'-h', '--help'} & set(sys.argv[1:] if arguments is None else arguments):
         print(help_text(SERVICES))
         sys.exit(0)
+    sys.setswitchinterval(SWITCH_INTERVAL)
     code = run(
         NAME,
         _make_node,
