@@ -29,8 +29,11 @@ COLOURS = ('#0072B2', '#D55E00', '#009E73', '#CC79A7', '#E69F00', '#56B4E9')
 MOST_SAMPLES = 60_000
 #: Scripts of the page, in the order in which it runs them.
 SCRIPTS = ('searches.js', 'drawing.js', 'view.js', 'page.js')
-#: What each planner does, as a sentence, by its name.
-ABOUT = {entry.name: f'{entry.summary[:1].upper()}{entry.summary[1:]}.' for entry in PLANNERS}
+#: Sentence about each planner, and about what else may have made the path of auto.
+ABOUT = {entry.name: f'{entry.summary[:1].upper()}{entry.summary[1:]}.' for entry in PLANNERS} | {
+    'polyanya': 'The shortest path; the samples are those of the search before it.',
+    'flood_fill': 'The path of a flood fill; the samples are those of the search before it.',
+}
 
 
 class Shown(NamedTuple):

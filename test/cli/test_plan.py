@@ -14,7 +14,7 @@ from hnr_planner.cli.plan import OPTIMIZE_FOR, optimize_for
 from hnr_planner.cli.sample import WALK_NAMES
 from hnr_planner.core import ALGORITHMS, GridSpace, WALKS
 from hnr_planner.core.planning.registry import PLANNERS
-from hnr_planner.maps import load_map, OccupancyMap, save_map
+from hnr_planner.maps import load_map, OccupancyMap, save_map, spiral
 import numpy as np
 import pytest
 
@@ -29,11 +29,15 @@ KEYS = [
     'iterations',
     'elapsed',
     'length',
+    'lower_bound',
     'path',
     'paths',
     'goal_offset',
     'escape',
 ]
+
+#: What may have made a path of auto.
+OF_AUTO = {'hit_and_run_connect', 'polyanya', 'flood_fill'}
 
 
 def ends(rooms: OccupancyMap) -> list[object]:
@@ -71,7 +75,7 @@ def test_json_holds_a_free_path(
     result = json.loads(ran.out)
     assert list(result) == KEYS
     assert (result['status'], result['seed']) == ('SOLVED', 3)
-    assert result['algorithm'] in ALGORITHMS and result['algorithm'] != 'auto'
+    assert result['algorithm'] in (OF_AUTO if algorithm == 'auto' else {algorithm})
     assert algorithm in ('auto', result['algorithm'])
     path = np.array(result['path'])
     assert path[0].tolist() == list(at(rooms, 5, 5))
@@ -188,7 +192,6 @@ def test_optimize_for_never_ends_with_a_longer_path(
     plain, better = (json.loads(run(*command, '--optimize-for', time).out) for time in (0, 0.3))
     assert better['length'] <= plain['length']
     assert better['iterations'] > plain['iterations']
-    assert better['elapsed'] >= 0.3
 
 
 def test_the_path_is_optimized_by_default_unless_it_is_not_to_be_simplified() -> None:
@@ -200,12 +203,14 @@ def test_the_path_is_optimized_by_default_unless_it_is_not_to_be_simplified() ->
     assert optimize_for(parser.parse_args([*command, '--no-simplify', '--optimize-for', '1'])) == 1
 
 
-def test_time_limit_ends_a_longer_search_for_shorter_paths(
-    run: Run, rooms: OccupancyMap, rooms_file: Path
-) -> None:
-    command = ['plan', rooms_file, *ends(rooms), '--time-limit', 0.3, '--optimize-for', 60]
-    result = json.loads(run(*command, '--json').out)
-    assert result['status'] == 'SOLVED'
+def test_time_limit_ends_a_search_that_would_go_on(run: Run, tmp_path: Path) -> None:
+    corridor, file = spiral(0.12), tmp_path / 'spiral.yaml'
+    save_map(corridor.occupancy, file)
+    command = ['plan', file, '--start', *corridor.start, '--goal', *corridor.goal]
+    command += ['--algorithm', 'rrt', '--time-limit', 0.3, '--optimize-for', 60, '--json']
+    ran = run(*command)
+    result = json.loads(ran.out)
+    assert (ran.code, result['status']) == (1, 'TIMEOUT')
     assert 0.3 <= result['elapsed'] < 30
 
 
