@@ -61,7 +61,7 @@ def square(a: Any) -> Any:
 
 def whole_power(a: Any, exponent: int) -> Any:
     """Return ``a ** exponent`` for a constant >= 0, by squaring."""
-    product: Any = 1
+    product: Any = 1 if isinstance(a, int | np.integer) else 1.0
     while exponent:
         if exponent & 1:
             product = product * a

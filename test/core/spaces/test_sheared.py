@@ -152,16 +152,24 @@ def test_changes_of_sign_are_found_in_order(roots, first, expected):
 @pytest.mark.parametrize(
     ('base', 'bend', 'reason'),
     [
-        (ShearedSpace(BallSpace((0.0, 0.0), 1.0), 1.0), 1.0, 'a BallSpace or a BoxSpace, got <'),
+        (
+            ShearedSpace(BallSpace((0.0, 0.0), 1.0), 1.0),
+            1.0,
+            'a BallSpace or a BoxSpace, got S',
+        ),
         (BallSpace([0.0], 1.0), 1.0, 'two dimensions at least'),
         (BallSpace((0.0, 0.0), 1.0), np.nan, 'bend must be finite, got nan'),
         (BallSpace((0.0, 0.0), 1.0), 'much', "bend must be a number, got 'much'"),
         (
             BallSpace((0.0, 0.0), 1.0),
             1e5,
-            'together by no more than 10000, but 100000.0 does by 2',
+            'by no more than 10000, but 100000.0 stretches it by 2',
         ),
-        (BallSpace((0.0, 0.0), 10.0), 1e308, 'together by no more than 10000, but 1e.308 does by'),
+        (
+            BallSpace((0.0, 0.0), 10.0),
+            1e308,
+            'by no more than 10000, but 1e.308 stretches',
+        ),
     ],
 )
 def test_what_is_no_image_is_refused_with_the_reason(base, bend, reason):
