@@ -14,8 +14,8 @@ def joined(results: Sequence[PlanResult]) -> PlanResult:
     Return the results of solved legs as one; each leg begins where the one before it ended.
 
     Path and samples follow each other, with parents that refer to the rows as they are then.
-    Lengths, times, iterations and counts are summed. The seed is that of the first leg, since all
-    had the same or none.
+    Lengths, lower bounds, times, iterations and counts are summed; the planners of all legs are
+    named. The seed is that of the first leg, since all had the same or none.
     """
     first, *others = results
     if not others:
@@ -30,9 +30,11 @@ def joined(results: Sequence[PlanResult]) -> PlanResult:
         counts.update(result.counts)
     return replace(
         first,
+        planner=', '.join(dict.fromkeys(result.planner for result in results)),
         message=f'path through {len(others)} poses on the way',
         path=np.vstack([first.path, *(result.path[1:] for result in others)]),
         length=sum(result.length for result in results),
+        lower_bound=sum(result.lower_bound for result in results),
         samples=np.vstack([result.samples for result in results]),
         parents=np.concatenate(parents),
         iterations=sum(result.iterations for result in results),
