@@ -16,6 +16,7 @@ from hnr_planner.core.checks import check_seed, Floats
 from hnr_planner.core.errors import RequestError
 from hnr_planner.core.kernels.borrowed import borrowed
 from hnr_planner.core.kernels.kernel import kernel
+from hnr_planner.core.kernels.modes import waiting_for_machine_code
 from hnr_planner.core.kernels.streams import Stream
 from hnr_planner.core.planning.planner import PathSearch, Problem
 from hnr_planner.core.planning.planners.auto import Auto
@@ -57,7 +58,8 @@ class Roadmap:
         """
         Build the roadmap of a space.
 
-        It takes seconds: the work is bounded by counts, whatever the size of the map.
+        It takes seconds: the work is bounded by counts, whatever the size of the map. The first
+        call for a kind of space waits for the compiler as well; interpreted it would take minutes.
 
         Parameters
         ----------
@@ -78,7 +80,8 @@ class Roadmap:
         """
         _check_plane(space)
         seed = check_seed(seed)
-        return cls(seed, build_data(empty_roadmap(space), space, N_DRAWS, seed, cancel))
+        with waiting_for_machine_code():
+            return cls(seed, build_data(empty_roadmap(space), space, N_DRAWS, seed, cancel))
 
     def update(self, space: Space, *, cancel: Event | None = None) -> 'Roadmap':
         """
@@ -92,7 +95,8 @@ class Roadmap:
         """
         if not _same_frame(self.space, space):
             return Roadmap.build(space, seed=self.seed, cancel=cancel)
-        data = build_data(self._data, space, self._data.n_draws, self.seed, cancel)
+        with waiting_for_machine_code():
+            data = build_data(self._data, space, self._data.n_draws, self.seed, cancel)
         return Roadmap(self.seed, data)
 
     def grow(self, *, cancel: Event | None = None) -> 'Roadmap':
@@ -105,7 +109,8 @@ class Roadmap:
             When ``cancel`` was set.
 
         """
-        data = build_data(self._data, self.space, 2 * self._data.n_draws, self.seed, cancel)
+        with waiting_for_machine_code():
+            data = build_data(self._data, self.space, 2 * self._data.n_draws, self.seed, cancel)
         return Roadmap(self.seed, data)
 
     @property
