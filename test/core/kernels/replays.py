@@ -25,6 +25,7 @@ from hnr_planner.core import GridSpace, plan, Roadmap, sample, WALKS
 from hnr_planner.core.kernels.kernel import interpreted, Kernel
 from hnr_planner.core.planning.registry import ALGORITHMS
 from hnr_planner.core.systems import Car, DoubleIntegrator
+from hnr_planner.core.trajectories.plan_trajectory import plan_trajectory
 from hnr_planner.core.trajectories.registry import KINODYNAMIC_PLANNERS
 from hnr_planner.core.warming import draw_samples, find_motions, find_paths
 import numpy as np
@@ -157,7 +158,17 @@ def plan_motions() -> None:
             if algorithm == 'kinodynamic_connect' and isinstance(system, Car):
                 continue  # which does not know it
             state = (*START, *([0.0] * (system.state_dim - 2)))
-            _plan(HALL, state, GOAL, system=system, algorithm=algorithm, goal_radius=0.3, seed=0)
+            plan_trajectory(
+                HALL,
+                system,
+                state,
+                GOAL,
+                algorithm=algorithm,
+                goal_radius=0.3,
+                seed=0,
+                time_limit=math.inf,
+                max_iterations=60,
+            )
 
 
 def _plan(space: Any, start: Any, goal: Any, **options: Any) -> None:
