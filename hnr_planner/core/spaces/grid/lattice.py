@@ -13,6 +13,7 @@ from typing import NamedTuple
 
 from hnr_planner.core.checks import Floats
 from hnr_planner.core.kernels.borrowed import borrowed
+from hnr_planner.core.kernels.copies import copy_into, copy_rows
 from hnr_planner.core.kernels.kernel import kernel
 from hnr_planner.core.lengths import distance
 from hnr_planner.core.spaces.grid.traversal import GridData
@@ -120,8 +121,12 @@ def rough_path(grid, lattice, start, goal):
         if least > length[k] + left:
             continue  # a shorter path to this node was found since
         if ends[k]:
-            path = branch(nodes, parents, k)
-            return np.concatenate((start.reshape((1, 2)), path, goal.reshape((1, 2))))
+            between = branch(nodes, parents, k)
+            path = np.empty((len(between) + 2, 2))
+            copy_into(path[0], start)
+            copy_rows(path[1:-1], between)
+            copy_into(path[-1], goal)
+            return path
         for step in range(len(STEPS)):
             if lattice.joined[k, step]:
                 near = _block_at(k, step, lattice.columns, n)
