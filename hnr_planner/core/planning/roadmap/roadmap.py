@@ -15,6 +15,7 @@ from hnr_planner.core.cancellation import Event
 from hnr_planner.core.checks import check_seed, Floats
 from hnr_planner.core.errors import RequestError
 from hnr_planner.core.kernels.borrowed import borrowed
+from hnr_planner.core.kernels.copies import copy_rows
 from hnr_planner.core.kernels.kernel import kernel
 from hnr_planner.core.kernels.modes import waiting_for_machine_code
 from hnr_planner.core.kernels.streams import Stream
@@ -224,4 +225,11 @@ def shortest_path(space, nodes, paths, exits, ahead, back):
         first = paths.previous[last, first]
     while first != last and segment_is_free(space, nodes[paths.previous[first, last]], back[-1]):
         last = paths.previous[first, last]
-    return np.concatenate((ahead, branch(nodes, paths.previous[first], last), back[::-1]))
+    between = branch(nodes, paths.previous[first], last)
+    left = len(ahead)
+    arrived = left + len(between)
+    path = np.empty((arrived + len(back), nodes.shape[1]))
+    copy_rows(path[:left], ahead)
+    copy_rows(path[left:arrived], between)
+    copy_rows(path[arrived:], back[::-1])
+    return path
