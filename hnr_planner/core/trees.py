@@ -1,5 +1,6 @@
 """Trees as arrays of parents: entry ``k`` is the row of the parent of row ``k``."""
 
+from hnr_planner.core.kernels.copies import copy_into
 from hnr_planner.core.kernels.kernel import kernel
 import numpy as np
 
@@ -26,5 +27,5 @@ def branch(samples, parents, k):
     rows = rows_to(parents, k)
     points = np.empty((len(rows), samples.shape[1]))
     for i in range(len(rows)):
-        points[i] = samples[rows[i]]
+        copy_into(points[i], samples[rows[i]])
     return points

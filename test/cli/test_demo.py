@@ -165,7 +165,7 @@ sys.exit(client.main(['--start', '0', '0', '--goal', '1', '1']))
 def test_death_of_a_node_is_reported(start, rooms_file: Path, node: str, moment: str) -> None:
     demo = start('--keep', '--map', rooms_file)
     demo.read_until(moment)
-    (pid,) = demo.members(f'hnr_planner.ros.{node}')
+    (pid,) = demo.members(f'hnr_planner.ros.node.{node}')
     os.kill(pid, signal.SIGKILL)
     code, said = demo.finish()
     assert code == 1

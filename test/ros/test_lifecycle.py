@@ -166,7 +166,8 @@ def test_deactivation_ends_searches(client: Client, planner: NodeProcess) -> Non
     client.set_parameters(time_limit=60.0, sample_count=1_000_000, sample_thin=100_000)
     client.publish_map(grid_message(maze()))
     planner.wait_for('map received')
-    futures = [client.send_plan(pose(0.025, 0.025), pose(20, 20)) for _ in range(3)]
+    ends = pose(0.025, 0.025), pose(20, 20)
+    futures = [client.send_plan(*ends, service='plan_hit_and_run') for _ in range(3)]
     sampling = client.send_sample()
     client.wait_for_running(len(futures) + 1)
     assert change(client, DEACTIVATE) == [True]

@@ -51,10 +51,10 @@ def long_search(client: Client, planner: NodeProcess) -> Iterator[dict[str, Any]
     received = planner.log.count('map received')
     client.publish_map(grid_message(maze()))
     until(lambda: planner.log.count('map received') > received, 'the maze')
-    client.set_parameters(time_limit=60.0)
+    client.set_parameters(time_limit=60.0, algorithm='hit_and_run')
     yield {'start': pose(0.025, 0.025), 'goal': pose(20.0, 20.0), 'use_start': True}
     if planner.popen.poll() is None:
-        client.set_parameters(time_limit=1.0)
+        client.set_parameters(time_limit=1.0, algorithm='auto')
         client.publish_map(grid_message(ROOMS))
         until(lambda: planner.log.count('map received') > received + 1, 'the rooms')
 

@@ -109,7 +109,7 @@ def test_more_searches_than_places_leave_cancel_a_thread(client: Client) -> None
 def test_time_limit_holds(client: Client) -> None:
     client.set_parameters(time_limit=0.5)
     began = time.monotonic()
-    path = client.plan(START, GOAL)
+    path = client.plan(START, GOAL, service='plan_hit_and_run')
     elapsed = time.monotonic() - began
     client.set_parameters(time_limit=60.0)
     outcome, values = client.outcome_of(path)
@@ -137,12 +137,13 @@ def test_map_that_changes_its_size_disturbs_neither_search_nor_truth(
 def test_path_found_on_a_map_that_is_gone_is_not_given(
     client: Client, planner: NodeProcess
 ) -> None:
-    """The search goes on for a better path for 6 s; meanwhile a wall closes its door."""
+    """The motion is made faster for 6 s; meanwhile a wall closes its door."""
     open_rooms, closed = two_rooms(100, 104), two_rooms(100, 104, door=0)
     client.publish_map(grid_message(open_rooms, RESOLUTION))
     until(lambda: planner.log.count('104 x 100 cells') == 1, 'the open rooms')
     client.set_parameters(optimize_for=6.0)
-    future = client.send_plan(pose(0.5, 0.5), pose(4.5, 0.5))
+    ends = pose(0.5, 0.5), pose(4.5, 0.5)
+    future = client.send_plan(*ends, service='plan_kinodynamic_connect')
     client.wait_for_running(1)
     client.publish_map(grid_message(closed, RESOLUTION))
     until(lambda: planner.log.count('104 x 100 cells') == 2, 'the closed rooms')

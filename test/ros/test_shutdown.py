@@ -51,7 +51,7 @@ def test_searching_node_answers_and_ends_cleanly(
             start, goal = pose(0.025, 0.025), pose(20, 20)
             # Discovery is over when everything about a first request has arrived.
             client.outcome_of(client.plan(start, start))
-            futures = [client.send_plan(start, goal) for _ in range(3)]
+            futures = [client.send_plan(start, goal, 'plan_hit_and_run') for _ in range(3)]
             client.wait_for_running(len(futures))
             assert_clean_end(process, *signals)
             for future in futures:

@@ -61,7 +61,7 @@ def square(a: Any) -> Any:
 
 def whole_power(a: Any, exponent: int) -> Any:
     """Return ``a ** exponent`` for a constant >= 0, by squaring."""
-    product: Any = 1 if isinstance(a, int | np.integer) else 1.0
+    product: Any = 1.0 if isinstance(a, float | np.floating) else 1
     while exponent:
         if exponent & 1:
             product = product * a

@@ -13,7 +13,7 @@ owner would be gone.
 from typing import Any
 
 from numba.core import cgutils, types
-from numba.extending import intrinsic, overload
+from numba.extending import lower_builtin, type_callable
 
 
 def borrowed(value: Any) -> Any:
@@ -21,14 +21,15 @@ def borrowed(value: Any) -> Any:
     return value
 
 
-@intrinsic
-def _without_owner(_typing_context: Any, kind: Any) -> Any:
+@type_callable(borrowed)
+def _type_of_borrowed(_typing_context: Any) -> Any:
+    return lambda value: value
+
+
+@lower_builtin(borrowed, types.Any)
+def _without_owner(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
     """Return the same array or tuple, of the same type, but without owners to count for."""
-
-    def generate(context: Any, builder: Any, _signature: Any, arguments: Any) -> Any:
-        return _disowned(context, builder, kind, arguments[0])
-
-    return kind(kind), generate
+    return _disowned(context, builder, signature.return_type, arguments[0])
 
 
 def _disowned(context: Any, builder: Any, kind: Any, value: Any) -> Any:
@@ -43,8 +44,3 @@ def _disowned(context: Any, builder: Any, kind: Any, value: Any) -> Any:
             lent = _disowned(context, builder, member, builder.extract_value(value, i))
             value = builder.insert_value(value, lent, i)
     return value
-
-
-@overload(borrowed)
-def _compiled_borrowed(value):
-    return lambda value: _without_owner(value)  # type: ignore[call-arg]

@@ -6,19 +6,29 @@ numba checks the shapes, and compiles the text of its error message with it. A l
 and runs as fast.
 """
 
+from typing import Any
+
 from hnr_planner.core.kernels.kernel import inlined
 
 
 @inlined
 def copy_into(target, source):
-    """Write a vector (n,) into another one, which may be a row of a matrix."""
+    """Write the first ``n`` of a vector into ``target`` (n,), which may be part of an array."""
     for i in range(len(target)):
         target[i] = source[i]
 
 
 @inlined
 def copy_rows(target, source):
-    """Write a matrix (m, n) into another one, which may be a slice of a larger one."""
+    """Write the first ``m`` rows of a matrix into ``target`` (m, n), which may be part of one."""
     for k in range(target.shape[0]):
         for i in range(target.shape[1]):
             target[k, i] = source[k, i]
+
+
+def _assign(target: Any, source: Any) -> None:
+    target[...] = source[: len(target)]
+
+
+# Interpreted, an assignment is the cheap one.
+copy_into.interpreted_form = copy_rows.interpreted_form = _assign

@@ -22,9 +22,11 @@ from collections.abc import Callable
 from functools import cache, wraps
 from typing import Any, Protocol
 
-from hnr_planner.core.kernels.kernel import another, INLINED, Kernel
+from hnr_planner.core.kernels.kernel import another, Kernel
+from numba import typeof
 from numba.core import types
-from numba.extending import overload
+from numba.core.typing.templates import infer_global
+from numba.extending import models, register_model
 
 
 class Dispatched(Protocol):
@@ -49,6 +51,32 @@ class Dispatched(Protocol):
         """Return whether a kernel is registered for the type of ``data``."""
 
 
+class _DispatchedType(types.Callable, types.Dummy):
+    """Numba's type of a dispatched function: a call of it is a call of the kernel it picks."""
+
+    def __init__(self, function: Any, kernel_for: Callable[[Any], Kernel]) -> None:
+        self.kernel_for = kernel_for
+        super().__init__(f'dispatched({function.__module__}.{function.__qualname__})')
+
+    def _type_for(self, arguments: Any) -> Any:
+        return typeof(self.kernel_for(arguments[0]))
+
+    def get_call_type(self, context: Any, args: Any, kws: Any) -> Any:
+        """Type a call by a kernel."""
+        return self._type_for(args).get_call_type(context, args, kws)
+
+    def get_call_signatures(self) -> tuple[Any, bool]:
+        """Name no signatures: each kernel has its own."""
+        return (), True
+
+    def get_impl_key(self, sig: Any) -> Any:
+        """Return the key of the code that a kernel calls."""
+        return self._type_for(sig.args).get_impl_key(sig)
+
+
+register_model(_DispatchedType)(models.OpaqueModel)
+
+
 def dispatched(default: Kernel) -> Dispatched:
     """Let other kernels answer for a kernel, each for a type of its first argument."""
     kernels: dict[type, Kernel] = {}
@@ -68,10 +96,7 @@ def dispatched(default: Kernel) -> Dispatched:
         registered = kernels.get(first.instance_class, default)
         return another(registered) if _has_members(first) else registered
 
-    @overload(call, jit_options=INLINED)
-    def compile_call(first, *rest):
-        own = own_kernel(first)
-        return lambda first, *rest: own(first, *rest)
+    infer_global(call, _DispatchedType(call, own_kernel))
 
     def register(data_type: type) -> Callable[[Kernel], Kernel]:
         def add(answer: Kernel) -> Kernel:

@@ -26,6 +26,7 @@ from hnr_planner.core.kernels.cache_folder import cache_folder, compiler_lock
 from hnr_planner.core.kernels.clock import not_working
 from hnr_planner.core.kernels.interpreted_form import interpreted_form
 from hnr_planner.core.kernels.modes import Mode, mode, mode_of_thread
+from hnr_planner.core.kernels.parts import Part
 from numba import typeof
 from numba.core import config, types
 from numba.core.caching import FunctionCache
@@ -119,10 +120,24 @@ class Kernel(CPUDispatcher):
         """Keep machine code in the cache folder."""
         self._cache = _Cache(self.py_func)
 
+    @cached_property
+    def part(self) -> Any:
+        """The kernel as other kernels call it."""
+        return Part(self.py_func, self.targetoptions)
+
     def get_call_template(self, args: Any, kws: Any) -> Any:
         """Type a call by another kernel: numba would compile it anew for each constant."""
         plain = {name: types.unliteral(kind) for name, kind in kws.items()}
-        return super().get_call_template([types.unliteral(kind) for kind in args], plain)
+        return self.part.get_call_template([types.unliteral(kind) for kind in args], plain)
+
+    @property
+    def is_compiling(self) -> Any:
+        """Whether a call of this kernel, met in compilation, is one by itself."""
+        return self._compiling_counter or self.part.is_compiling
+
+    def get_overload(self, sig: Any) -> Any:
+        """Return the key of the code that another kernel calls."""
+        return self.part.get_overload(sig)
 
     def load(self, signature: Signature) -> bool:
         """Load machine code from the cache; return whether it is loaded. Never compile."""

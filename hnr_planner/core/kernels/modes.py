@@ -79,3 +79,10 @@ def mode_of_thread(wanted: Mode) -> Iterator[None]:
         yield
     finally:
         _of_thread.mode = before
+
+
+@contextmanager
+def waiting_for_machine_code() -> Iterator[None]:
+    """Wait for the compiler within a block in which interpreted kernels would take far longer."""
+    with mode_of_thread(Mode.COMPILED if mode() is Mode.AUTO else mode()):
+        yield

@@ -14,6 +14,7 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
+from hnr_planner.core.cancellation import in_chunks
 from hnr_planner.core.checks import check_count, check_points, check_seed, Floats, Seed
 from hnr_planner.core.errors import RequestError, StuckError
 from hnr_planner.core.kernels.borrowed import borrowed
@@ -35,6 +36,8 @@ from hnr_planner.core.spaces.space import Space
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+#: Steps of one call of the kernel: machine code that has just arrived is used from the next on.
+STEPS_AT_ONCE = 4096
 #: Number of steps without a move after which a chain is stuck. A chain that moves at one step in
 #: fifty has so many with probability .98 ** 1000 = 2e-9.
 STUCK_AFTER = 1000
@@ -81,7 +84,11 @@ def run_chain(space: Space, walk: Any, chain: Chain, thin: int, draws: Floats) -
         When the chain has not moved for ``STUCK_AFTER`` steps.
 
     """
-    take_steps(space.data, walk, chain, np.zeros(space.dim), thin, draws)
+    u = np.zeros(space.dim)
+    for rows in in_chunks(len(draws), None, max(1, STEPS_AT_ONCE // thin)):
+        take_steps(space.data, walk, chain, u, thin, draws[rows])
+        if chain.counts[STILL] >= STUCK_AFTER:
+            break
     if chain.counts[STILL] >= STUCK_AFTER:
         steps, moves, zero_chords = chain.counts[[STEPS, MOVES, ZERO_CHORDS]]
         raise StuckError(

@@ -9,6 +9,7 @@ Steps of chains, which start from the point before and reuse its cache, are in m
 
 import math
 
+from hnr_planner.core.kernels.copies import copy_into
 from hnr_planner.core.kernels.kernel import inlined, kernel
 from hnr_planner.core.kernels.streams import draw_normals, uniform
 from hnr_planner.core.spaces.primitives import chord, contains
@@ -62,5 +63,5 @@ def draw_between(space, x, u, lower, upper, rng, y):
             y[i] = x[i] + s * u[i]
         if lower < s < upper and contains(space, y):
             return redraws
-    y[:] = x
+    copy_into(y, x)
     return REDRAWS_MAX

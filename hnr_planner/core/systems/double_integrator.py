@@ -253,7 +253,8 @@ def _brake(system, state, control):
 def _halt(system, state):
     """Set the velocity of a state (2 dim,) to 0."""
     half = len(state) // 2
-    state[half:] = 0.0
+    for i in range(half, len(state)):
+        state[i] = 0.0
 
 
 @velocity.register(DoubleIntegratorData)

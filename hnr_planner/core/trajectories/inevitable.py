@@ -81,12 +81,12 @@ def _spread(free_distance, x, y, radius, cells, n, reached, stack):
     waiting, found = 0, 0
     for k in range(n):
         if _touches(cells[k, 0], cells[k, 1], x, y, radius):
-            stack[waiting] = cells[k]
+            stack[waiting, 0], stack[waiting, 1] = cells[k, 0], cells[k, 1]
             reached[cells[k, 0], cells[k, 1]] = True
             waiting += 1
     while waiting > 0:
         waiting -= 1
-        row, column = stack[waiting]
+        row, column = stack[waiting, 0], stack[waiting, 1]
         cells[found, 0], cells[found, 1] = row, column
         found += 1
         for i, j in ((row, column - 1), (row, column + 1), (row - 1, column), (row + 1, column)):

@@ -10,6 +10,7 @@ motion.
 import math
 
 from hnr_planner.core.kernels.borrowed import borrowed
+from hnr_planner.core.kernels.copies import copy_into
 from hnr_planner.core.kernels.kernel import kernel
 from hnr_planner.core.kernels.streams import Stream, uniform
 from hnr_planner.core.lengths import distance
@@ -71,7 +72,8 @@ def _replace(system, durations, states, controls, n, i, j, connection):
     pieces, state_dim, dim = connection.n[0], states.shape[1], controls.shape[1]
     fewer = j - i - pieces
     for k in range(pieces):
-        durations[i + k], controls[i + k] = connection.durations[k], connection.controls[k]
+        durations[i + k] = connection.durations[k]
+        copy_into(controls[i + k], connection.controls[k])
         if k + 1 < pieces:
             move(system, states[i + k], controls[i + k], durations[i + k], states[i + k + 1])
     for k in range(j, n):

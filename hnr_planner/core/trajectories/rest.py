@@ -49,7 +49,8 @@ def _braked(system, steps, n_rows, row):
         return n_rows
     move(system, state, control, duration, end)
     dim = len(control)
-    end[dim:] = 0.0
+    for i in range(dim, len(end)):
+        end[i] = 0.0
     steps.parents[n_rows], steps.durations[n_rows] = row, duration
     return n_rows + 1
 

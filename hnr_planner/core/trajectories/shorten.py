@@ -9,6 +9,7 @@ Ng-Thow-Hing, 2010). The end may lie anywhere in the goal region, at any speed a
 import math
 
 from hnr_planner.core.kernels.borrowed import borrowed
+from hnr_planner.core.kernels.copies import copy_into, copy_rows
 from hnr_planner.core.kernels.kernel import kernel
 from hnr_planner.core.kernels.streams import normal, Stream, uniform
 from hnr_planner.core.sampling.draws import draw_in_ball
@@ -139,7 +140,7 @@ def _draw_end(problem, rng, last, end, brakes):
     """Draw an end in the goal region, at a speed allowed there: near the last one or uniform."""
     geometric, dim = problem.geometric, len(problem.geometric.goal)
     fraction = LEAST_SHIFT ** uniform(rng) if uniform(rng) < 0.5 else 1.0
-    end[:] = last
+    copy_into(end, last)
     offset = np.empty(dim)
     if geometric.goal_radius > 0.0:
         draw_in_ball(geometric.goal_radius, rng, offset)
@@ -151,7 +152,7 @@ def _draw_end(problem, rng, last, end, brakes):
         for i in range(dim):
             end[dim + i] += fraction * (offset[i] - end[dim + i])
     if not is_at_goal(problem, end) or (brakes and not can_brake(problem, end, dim)):
-        end[:] = last
+        copy_into(end, last)
 
 
 @kernel
@@ -163,7 +164,7 @@ def is_free(problem, state, connection):
         if contact(problem.system, problem.geometric.space, at, control, duration) <= duration:
             return False
         move(problem.system, at, control, duration, end)
-        at[:] = end
+        copy_into(at, end)
     return True
 
 
@@ -178,25 +179,33 @@ def _spliced(system, durations, states, controls, window, ends, connections):
     new_durations = np.empty(rows)
     new_states, new_controls = np.empty((rows + 1, len(a))), np.empty((rows, controls.shape[1]))
     n = i
-    new_durations[:n], new_states[:n], new_controls[:n] = durations[:n], states[:n], controls[:n]
+    copy_into(new_durations[:n], durations)
+    copy_rows(new_states[:n], states)
+    copy_rows(new_controls[:n], controls)
     if after_i > 0.0:
-        new_durations[n], new_states[n], new_controls[n] = after_i, states[i], controls[i]
+        new_durations[n] = after_i
+        copy_into(new_states[n], states[i])
+        copy_into(new_controls[n], controls[i])
         n += 1
     for c in range(2):
         connection = connections[c]
         if connection.n[0] > 0:
-            new_states[n] = a if c == 0 else between
+            copy_into(new_states[n], a if c == 0 else between)
         for k in range(connection.n[0]):
-            new_durations[n], new_controls[n] = connection.durations[k], connection.controls[k]
+            new_durations[n] = connection.durations[k]
+            copy_into(new_controls[n], connection.controls[k])
             move(system, new_states[n], new_controls[n], new_durations[n], new_states[n + 1])
             n += 1
-    new_states[n] = b
+    copy_into(new_states[n], b)
     if keeps:
-        new_durations[n], new_controls[n] = rest, controls[j]
+        new_durations[n] = rest
+        copy_into(new_controls[n], controls[j])
         n += 1
     for k in range(j + 1, len(durations)):
-        new_durations[n], new_states[n], new_controls[n] = durations[k], states[k], controls[k]
+        new_durations[n] = durations[k]
+        copy_into(new_states[n], states[k])
+        copy_into(new_controls[n], controls[k])
         n += 1
     if keeps or j + 1 < len(durations):
-        new_states[n] = states[-1]
+        copy_into(new_states[n], states[-1])
     return new_durations[:n], new_states[: n + 1], new_controls[:n]

@@ -14,6 +14,7 @@ step that meets it is a setting:
 from typing import NamedTuple
 
 from hnr_planner.core.checks import Floats
+from hnr_planner.core.kernels.copies import copy_into
 from hnr_planner.core.kernels.kernel import kernel
 from hnr_planner.core.lengths import distance
 from hnr_planner.core.spaces.primitives import contains_around
@@ -114,6 +115,7 @@ def _stop_before(problem, state, control, met, end):
     if duration < SHORTEST_STEP or distance(end[:dim], state[:dim]) <= geometric.margin:
         if speed_of(problem.system, state, dim) == 0.0:
             return -1.0
-        duration, end[:] = SHORTEST_STEP, state
+        duration = SHORTEST_STEP
+        copy_into(end, state)
     halt(problem.system, end)
     return duration

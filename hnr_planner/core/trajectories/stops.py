@@ -3,6 +3,7 @@
 import math
 
 from hnr_planner.core.checks import Floats
+from hnr_planner.core.kernels.copies import copy_into
 from hnr_planner.core.kernels.kernel import kernel
 from hnr_planner.core.lengths import distance
 from hnr_planner.core.planning.homology import NO_ISLANDS
@@ -37,7 +38,7 @@ def drive_stops(system, stops):
     n, dim = len(stops) - 1, stops.shape[1]
     durations, controls = np.empty(3 * n), np.zeros((3 * n, dim))
     states = np.zeros((3 * n + 1, 2 * dim))
-    states[0, :dim] = stops[0]
+    copy_into(states[0, :dim], stops[0])
     rows = 0
     for k in range(n):
         length = distance(stops[k], stops[k + 1])
@@ -60,5 +61,6 @@ def drive_stops(system, stops):
                 controls[rows, i] = sign * strongest * u[i]
             move(system, states[rows], controls[rows], duration, states[rows + 1])
             rows += 1
-        states[rows, :dim], states[rows, dim:] = stops[k + 1], 0.0
+        for i in range(dim):
+            states[rows, i], states[rows, dim + i] = stops[k + 1, i], 0.0
     return durations[:rows], states[: rows + 1], controls[:rows]

@@ -217,7 +217,7 @@ def _write_pieces(duration, work):
     cuts[0], cuts[1] = 0.0, duration
     for i in range(dim):
         cuts[2 + 2 * i], cuts[3 + 2 * i] = axes[FIRST, i], axes[LAST, i]
-    cuts.sort()
+    _sort(cuts)
     begin = 0.0
     for end in cuts:
         if end - begin < SHORTEST_STEP:
@@ -235,3 +235,14 @@ def _write_pieces(duration, work):
         n += 1
     work.durations[n - 1] += duration - begin
     work.n[0] = n
+
+
+@kernel
+def _sort(values):
+    """Sort a few values (n,): numba's own sort takes a second to compile."""
+    for i in range(1, len(values)):
+        value, k = values[i], i
+        while k > 0 and value < values[k - 1]:
+            values[k] = values[k - 1]
+            k -= 1
+        values[k] = value

@@ -141,7 +141,9 @@ def searching(
     folder: Path, asking: list[Caller], time_limit: float = 60.0
 ) -> Iterator[tuple[NodeProcess, list]]:
     """Run a node that searches for each of some callers, and return the futures of theirs."""
-    with node_process('planner_node', folder / 'log', time_limit=time_limit) as planner:
+    # With auto, a flood fill would soon solve it.
+    settings = {'time_limit': time_limit, 'algorithm': 'hit_and_run'}
+    with node_process('planner_node', folder / 'log', **settings) as planner:
         with client_of(planner, World(LONG, 0.05)) as client:
             for caller in asking:
                 caller.ask_again_until_answered(SHORT)

@@ -91,6 +91,8 @@ def test_cancellation_is_for_the_own_searches(sides: tuple[Side, Side]) -> None:
     left, right = sides
     for own in sides:
         own.use(World(LONG, 0.05))
+        # With auto, a flood fill would soon solve it.
+        own.client.set_parameters(algorithm='hit_and_run', time_limit=60.0)
     futures = [own.caller.send(plan_request(START, END)) for own in sides]
     for own in sides:
         own.client.wait_for_running(1)

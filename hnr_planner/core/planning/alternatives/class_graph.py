@@ -66,7 +66,8 @@ def near_edges(space, points, rows, n_near):
     edges, n_edges = np.empty((len(rows) * n_near, 2), dtype=np.int64), 0
     nearest, squared = np.empty(n_near, dtype=np.int64), np.empty(n_near)
     for i in rows:
-        nearest[:], squared[:] = NONE, math.inf
+        for k in range(n_near):
+            nearest[k], squared[k] = NONE, math.inf
         for j in range(len(points)):
             if j != i:
                 distance_squared = (points[j, 0] - points[i, 0]) ** 2 + (

@@ -14,6 +14,7 @@ from typing import ClassVar, NamedTuple
 
 from hnr_planner.core.checks import Floats
 from hnr_planner.core.kernels.borrowed import borrowed
+from hnr_planner.core.kernels.copies import copy_into
 from hnr_planner.core.kernels.kernel import kernel
 from hnr_planner.core.kernels.streams import Stream, uniform
 from hnr_planner.core.planning.planner import Problem, reaches_goal, with_capacity
@@ -131,10 +132,10 @@ def _plant(problem, rows):
         empty_frontier(problem.lower, problem.upper, problem.typical_clearance),
         np.empty((2, len(problem.start))),
     )
-    trees.table.vertices[0] = problem.start
+    copy_into(trees.table.vertices[0], problem.start)
     _add(trees, 0, NONE)
     if component(problem.space, problem.goal) == component(problem.space, problem.start):
-        trees.table.vertices[1] = problem.goal
+        copy_into(trees.table.vertices[1], problem.goal)
         _add(trees, 1, NONE)
     return trees
 
@@ -170,7 +171,7 @@ def _step(space, x, rng, directions, y):
         reach = first_exit(space, x, u, 0.0, np.inf)
         if reach > longest:
             longest = reach
-            best[:] = u
+            copy_into(best, u)
     return draw_between(space, x, best, INNER * longest, longest, rng, y)
 
 

@@ -18,6 +18,7 @@ from typing import ClassVar
 
 from hnr_planner.core.checks import Floats
 from hnr_planner.core.errors import RequestError
+from hnr_planner.core.kernels.copies import copy_into
 from hnr_planner.core.kernels.kernel import kernel
 from hnr_planner.core.kernels.streams import Stream
 from hnr_planner.core.lengths import distance
@@ -193,7 +194,7 @@ def step_aside(space, points, margin):
     their corners: then the path gets a vertex there as well.
     """
     aside = np.empty((GRAZED_MAX * len(points), 2))
-    aside[0] = points[0]
+    copy_into(aside[0], points[0])
     n, k = 1, 1
     pending = np.empty((GRAZED_MAX * len(points), 2))
     n_pending = 0
@@ -207,10 +208,10 @@ def step_aside(space, points, margin):
             step = _step_from(space.free_distance, int(corner[0]), int(corner[1]))
             bend = corner + margin * step
             if step.any() and distance(bend, a) > 0.0 and distance(bend, end) > 0.0:
-                pending[n_pending] = bend
+                copy_into(pending[n_pending], bend)
                 n_pending += 1
                 continue
-        aside[n] = end
+        copy_into(aside[n], end)
         n += 1
         if n_pending > 0:
             n_pending -= 1
@@ -229,5 +230,5 @@ def _step_from(free_distance, x, y):
                 step[0], step[1] = right, up
                 n_blocked += 1
     if n_blocked != 1:
-        step[:] = 0.0
+        step[0], step[1] = 0.0, 0.0
     return step

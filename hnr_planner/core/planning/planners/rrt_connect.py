@@ -13,6 +13,7 @@ from typing import ClassVar, NamedTuple
 
 from hnr_planner.core.checks import check_positive
 from hnr_planner.core.kernels.borrowed import borrowed
+from hnr_planner.core.kernels.copies import copy_into
 from hnr_planner.core.kernels.kernel import kernel
 from hnr_planner.core.kernels.streams import Stream
 from hnr_planner.core.lengths import norm
@@ -152,10 +153,10 @@ class RRTConnectSearch(TwoTreeSearch):
 @kernel
 def _plant(problem, trees):
     """Add a root at the start and, where it is in the same component, one at the goal."""
-    trees.table.vertices[0] = problem.start
+    copy_into(trees.table.vertices[0], problem.start)
     _add(trees, 0, NONE)
     if component(problem.space, problem.goal) == component(problem.space, problem.start):
-        trees.table.vertices[1] = problem.goal
+        copy_into(trees.table.vertices[1], problem.goal)
         _add(trees, 1, NONE)
 
 
@@ -175,12 +176,12 @@ def _grow(problem, max_step, trees, rng, n_iterations):
             near = nearest(trees.boxes, vertices, towards, tree)
             trees.turn[0] = (tree + 1) % n_trees
         else:
-            towards[:] = vertices[target]
+            copy_into(towards, vertices[target])
         outcome = _step(problem, max_step, vertices[near], towards, vertices[end])
         if outcome == REACHED and target != NONE:
             return ((near, target) if tree == 0 else (target, near)), i + 1
         if outcome == TRAPPED:
-            drawn[:] = NONE
+            drawn[0], drawn[1] = NONE, NONE
             continue
         row = _add(trees, tree, near)
         if tree == 0 and problem.goal_radius > 0.0 and reaches_goal(problem, vertices[row]):

@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 from typing import ClassVar, NamedTuple
 
 from hnr_planner.core.checks import Floats
+from hnr_planner.core.kernels.copies import copy_rows
 from hnr_planner.core.kernels.kernel import kernel
 from hnr_planner.core.kernels.streams import Stream
 from hnr_planner.core.planning.planner import Problem, to_goal, with_capacity
@@ -129,4 +130,8 @@ class TwoTreeSearch(ABC):
 def _through(vertices, parents, first, second):
     """Return the path (m, dim) from the root of ``first`` over ``second`` to the root of that."""
     ahead, back = branch(vertices, parents, first), branch(vertices, parents, second)
-    return np.concatenate((ahead, back[::-1]))
+    met = len(ahead)
+    path = np.empty((met + len(back), vertices.shape[1]))
+    copy_rows(path[:met], ahead)
+    copy_rows(path[met:], back[::-1])
+    return path

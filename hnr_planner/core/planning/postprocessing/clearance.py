@@ -11,6 +11,7 @@ cost, and those that are not needed any more are dropped.
 from typing import Any, NamedTuple
 
 from hnr_planner.core.checks import Floats
+from hnr_planner.core.kernels.copies import copy_into, copy_rows
 from hnr_planner.core.kernels.kernel import kernel
 from hnr_planner.core.lengths import distance, path_length
 from hnr_planner.core.planning.homology import (
@@ -140,7 +141,7 @@ def _segment_cost(cost, a, b, most):
 def spread(cost, points):
     """Return the path with vertices added where it lacks clearance, denser near walls."""
     dense, n_dense = np.empty((2 * len(points), points.shape[1])), 1
-    dense[0] = points[0]
+    copy_into(dense[0], points[0])
     for k in range(1, len(points)):
         a, way, length = (
             points[k - 1],
@@ -155,13 +156,15 @@ def spread(cost, points):
             enough = (1.0 + ADDED) * distance(begin, end)
             lacks = _segment_cost(cost, begin, end, enough) > enough
             if n_dense + 2 > len(dense):
-                dense = np.concatenate((dense, np.empty_like(dense)))
+                larger = np.empty((2 * len(dense), points.shape[1]))
+                copy_rows(larger[:n_dense], dense)
+                dense = larger
             if lacks and not has_end:
-                dense[n_dense] = begin
+                copy_into(dense[n_dense], begin)
                 n_dense += 1
             has_end = lacks or covered == length
             if has_end:
-                dense[n_dense] = end
+                copy_into(dense[n_dense], end)
                 n_dense += 1
     return dense[:n_dense]
 
@@ -202,7 +205,8 @@ def _move_one(space, islands, cost, points, costs, k, step):
         if first + second < before:
             second = _segment_cost(cost, y, b, before - first)
             if first + second < before:
-                x[:], costs[k], costs[k + 1] = y, first, second
+                copy_into(x, y)
+                costs[k], costs[k + 1] = first, second
                 return True
     return False
 
@@ -211,7 +215,7 @@ def _move_one(space, islands, cost, points, costs, k, step):
 def drop(space, islands, cost, points):
     """Return the path without the vertices whose removal adds at most ``ADDED`` of the cost."""
     kept, n_kept, k = np.empty_like(points), 1, 0
-    kept[0] = points[0]
+    copy_into(kept[0], points[0])
     while k < len(points) - 1:
         last = k + 1
         passed = crossings(islands, points[k], points[last])
@@ -228,6 +232,6 @@ def drop(space, islands, cost, points):
                 break
             last += 1
         k = last
-        kept[n_kept] = points[k]
+        copy_into(kept[n_kept], points[k])
         n_kept += 1
     return kept[:n_kept]

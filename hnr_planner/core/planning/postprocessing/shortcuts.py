@@ -14,6 +14,7 @@ island on the other side.
 """
 
 from hnr_planner.core.kernels.borrowed import borrowed
+from hnr_planner.core.kernels.copies import copy_into, copy_rows
 from hnr_planner.core.kernels.kernel import kernel
 from hnr_planner.core.kernels.streams import uniform
 from hnr_planner.core.lengths import norm
@@ -121,7 +122,7 @@ def pull(space, islands, points, k, margin, tests_max):
             else:
                 _slide(space, islands, before, x, after, margin)
             if not (segment_is_free(space, before, x) and segment_is_free(space, x, after)):
-                x[:] = kept
+                copy_into(x, kept)
         corner = _cut(space, islands, before, x, after, margin)
         tests += TESTS_OF_A_PULL
         points = _replaced(points, k, corner)
@@ -162,7 +163,8 @@ def _cut(space, islands, a, x, b, margin):
     corner = np.empty((2, len(x)))
     around = norm(x - a) + norm(b - x)
     free = max(free - margin / around, 0.0)
-    corner[0], corner[1] = x + free * (a - x), x + free * (b - x)
+    for i in range(len(x)):
+        corner[0, i], corner[1, i] = x[i] + free * (a[i] - x[i]), x[i] + free * (b[i] - x[i])
     gain = free * around - norm(corner[1] - corner[0])
     if (
         gain > LEAST_CUT * around
@@ -171,7 +173,7 @@ def _cut(space, islands, a, x, b, margin):
         and segment_is_free(space, corner[1], b)
     ):
         return corner
-    corner[0] = x
+    copy_into(corner[0], x)
     return corner[:1]
 
 
@@ -179,7 +181,12 @@ def _cut(space, islands, a, x, b, margin):
 def _replaced(points, k, others):
     """Return the path with vertex ``k`` replaced by ``others`` (n, dim)."""
     after = k + 1
-    return np.concatenate((points[:k], others, points[after:]))
+    n = k + len(others)
+    path = np.empty((n + len(points) - after, points.shape[1]))
+    copy_rows(path[:k], points)
+    copy_rows(path[k:n], others)
+    copy_rows(path[n:], points[after:])
+    return path
 
 
 @kernel
@@ -233,8 +240,9 @@ def _joined(points, i, a, b, j):
     """Return the path with all between vertices ``i`` and ``j`` replaced by the segment a-b."""
     kept = i + 1
     shorter = np.empty((kept + 2 + len(points) - j, points.shape[1]))
-    shorter[:kept] = points[:kept]
-    shorter[kept], shorter[kept + 1] = a, b
+    copy_rows(shorter[:kept], points)
+    copy_into(shorter[kept], a)
+    copy_into(shorter[kept + 1], b)
     tail = kept + 2
-    shorter[tail:] = points[j:]
+    copy_rows(shorter[tail:], points[j:])
     return shorter

@@ -83,7 +83,8 @@ def _corner_behind(space, a, x, b, offset, corner):
         middle = (free + blocked) / 2.0
     last = x + free * step
     s = min(first_exit(space, b, x + blocked * step - b, 0.0, 1.0), 1.0)
-    corner[:] = b + s * (last - b)
+    for i in range(len(corner)):
+        corner[i] = b[i] + s * (last[i] - b[i])
     _move_off_obstacle(space, corner, offset)
     return last
 

@@ -3,6 +3,7 @@
 from hnr_planner.core.cancellation import Event, in_chunks
 from hnr_planner.core.checks import Floats
 from hnr_planner.core.kernels.borrowed import borrowed
+from hnr_planner.core.kernels.copies import copy_into
 from hnr_planner.core.kernels.kernel import kernel
 from hnr_planner.core.kernels.streams import stream
 from hnr_planner.core.planning.planners.rrt import draw_in_box
@@ -69,4 +70,4 @@ def _walk(space, rng, steps, points):
     for k in range(len(points)):
         for _ in range(steps):
             hit_and_run_step(space, points[k], rng, y)
-            points[k] = y
+            copy_into(points[k], y)

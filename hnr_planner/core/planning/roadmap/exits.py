@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 from hnr_planner.core.checks import Floats
 from hnr_planner.core.kernels.borrowed import borrowed
+from hnr_planner.core.kernels.copies import copy_into
 from hnr_planner.core.kernels.kernel import kernel
 from hnr_planner.core.lengths import norm
 from hnr_planner.core.planning.bins import bin_of, Bins, bins_of, make_bins
@@ -84,7 +85,8 @@ def mark_exits(space, draws, edges, sources, distance, is_exit):
     space, draws, edges = borrowed(space), borrowed(draws), borrowed(edges)
     from_source = np.empty(len(distance), dtype=np.float32)
     for source in sources:
-        from_source[:] = math.inf
+        for k in range(len(from_source)):
+            from_source[k] = math.inf
         for edge in range(edges.first[source], edges.first[source + 1]):
             node, length = edges.to[edge], edges.length[edge]
             for k in range(len(distance)):
@@ -166,7 +168,7 @@ def _nearest_draws(exits, x, near):
 def walk_to_node(space, nodes, exits, x, rng):
     """Take Hit-and-Run steps from ``x`` until a node is visible; return the points (k, dim)."""
     walk = np.empty((STEPS_MAX + 1, len(x)))
-    walk[0] = x
+    copy_into(walk[0], x)
     steps = 0
     while steps < STEPS_MAX and len(visible_nodes(space, nodes, exits, walk[steps], True)[0]) == 0:
         hit_and_run_step(space, walk[steps], rng, walk[steps + 1])

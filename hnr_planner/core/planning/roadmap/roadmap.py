@@ -15,7 +15,9 @@ from hnr_planner.core.cancellation import Event
 from hnr_planner.core.checks import check_seed, Floats
 from hnr_planner.core.errors import RequestError
 from hnr_planner.core.kernels.borrowed import borrowed
+from hnr_planner.core.kernels.copies import copy_rows
 from hnr_planner.core.kernels.kernel import kernel
+from hnr_planner.core.kernels.modes import waiting_for_machine_code
 from hnr_planner.core.kernels.streams import Stream
 from hnr_planner.core.planning.planner import PathSearch, Problem
 from hnr_planner.core.planning.planners.auto import Auto
@@ -57,7 +59,8 @@ class Roadmap:
         """
         Build the roadmap of a space.
 
-        It takes seconds: the work is bounded by counts, whatever the size of the map.
+        It takes seconds: the work is bounded by counts, whatever the size of the map. The first
+        call for a kind of space waits for the compiler as well; interpreted it would take minutes.
 
         Parameters
         ----------
@@ -78,7 +81,8 @@ class Roadmap:
         """
         _check_plane(space)
         seed = check_seed(seed)
-        return cls(seed, build_data(empty_roadmap(space), space, N_DRAWS, seed, cancel))
+        with waiting_for_machine_code():
+            return cls(seed, build_data(empty_roadmap(space), space, N_DRAWS, seed, cancel))
 
     def update(self, space: Space, *, cancel: Event | None = None) -> 'Roadmap':
         """
@@ -92,7 +96,8 @@ class Roadmap:
         """
         if not _same_frame(self.space, space):
             return Roadmap.build(space, seed=self.seed, cancel=cancel)
-        data = build_data(self._data, space, self._data.n_draws, self.seed, cancel)
+        with waiting_for_machine_code():
+            data = build_data(self._data, space, self._data.n_draws, self.seed, cancel)
         return Roadmap(self.seed, data)
 
     def grow(self, *, cancel: Event | None = None) -> 'Roadmap':
@@ -105,7 +110,8 @@ class Roadmap:
             When ``cancel`` was set.
 
         """
-        data = build_data(self._data, self.space, 2 * self._data.n_draws, self.seed, cancel)
+        with waiting_for_machine_code():
+            data = build_data(self._data, self.space, 2 * self._data.n_draws, self.seed, cancel)
         return Roadmap(self.seed, data)
 
     @property
@@ -219,4 +225,11 @@ def shortest_path(space, nodes, paths, exits, ahead, back):
         first = paths.previous[last, first]
     while first != last and segment_is_free(space, nodes[paths.previous[first, last]], back[-1]):
         last = paths.previous[first, last]
-    return np.concatenate((ahead, branch(nodes, paths.previous[first], last), back[::-1]))
+    between = branch(nodes, paths.previous[first], last)
+    left = len(ahead)
+    arrived = left + len(between)
+    path = np.empty((arrived + len(back), nodes.shape[1]))
+    copy_rows(path[:left], ahead)
+    copy_rows(path[left:arrived], between)
+    copy_rows(path[arrived:], back[::-1])
+    return path

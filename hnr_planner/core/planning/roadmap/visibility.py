@@ -135,7 +135,8 @@ def repair(paths, rows, edges, visibility, new, new_length):
     for row in rows:
         distance, previous = paths.distance[row], paths.previous[row]
         _mark_intact(row, previous, visibility, intact, trail)
-        waits[:] = False
+        for k in range(n_nodes):
+            waits[k] = False
         for node in range(n_nodes):
             if intact[node] == 0:
                 distance[node], previous[node] = math.inf, NONE
@@ -161,7 +162,8 @@ def repair(paths, rows, edges, visibility, new, new_length):
 def _mark_intact(root, previous, visibility, intact, trail):
     """Write 1 to ``intact`` (n,) for nodes whose path from the root has all its edges, else 0."""
     unknown = -1
-    intact[:] = unknown
+    for k in range(len(intact)):
+        intact[k] = unknown
     intact[root] = 1
     for node in range(len(intact)):
         n, k = 0, node

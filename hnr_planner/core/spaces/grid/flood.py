@@ -3,6 +3,7 @@
 import math
 
 from hnr_planner.core.kernels.borrowed import borrowed
+from hnr_planner.core.kernels.copies import copy_into, copy_rows
 from hnr_planner.core.kernels.kernel import kernel
 import numpy as np
 
@@ -41,7 +42,7 @@ def flood_path_in_grid(grid, start, goal, goal_radius, margin):
 def _reaches(row, column, goal, goal_radius, margin, nearest):
     """Return whether a cell holds the goal, or has a point in its region; write that point."""
     if goal_radius == 0.0:
-        nearest[:] = goal
+        copy_into(nearest, goal)
         return row == math.floor(goal[1]) and column == math.floor(goal[0])
     nearest[0] = min(max(goal[0], column + margin), column + 1 - margin)
     nearest[1] = min(max(goal[1], row + margin), row + 1 - margin)
@@ -53,18 +54,21 @@ def _reaches(row, column, goal, goal_radius, margin, nearest):
 def _path_through(reached_by, start, row, column, end):
     """Return the path (m, 2) from the start to the cell [row, column], and on to ``end``."""
     path, n, before = np.empty((64, 2)), 1, 0
-    path[0] = end
+    copy_into(path[0], end)
     while True:
         step = reached_by[row, column]
         # A vertex wherever the direction changes, the first and the last cell included.
         if step != before:
             if n + 1 == len(path):
-                path = np.concatenate((path, np.empty_like(path)))
+                larger = np.empty((2 * len(path), 2))
+                copy_rows(larger[:n], path)
+                path = larger
             path[n, 0], path[n, 1] = column + 0.5, row + 0.5
             n += 1
         if step > len(STEPS):
             break
         row, column, before = row - STEPS[step - 1][0], column - STEPS[step - 1][1], step
-    path[n] = start
-    n += 1
-    return path[:n][::-1].copy()
+    copy_into(path[n], start)
+    forwards = np.empty((n + 1, 2))
+    copy_rows(forwards, path[n::-1])
+    return forwards
