@@ -57,7 +57,7 @@ def _contains(grid, x):
     return is_free(grid.free_distance, x[0], x[1])
 
 
-@kernel
+@inlined
 def is_free(free_distance, x, y):
     """Return whether every cell that touches the point is free."""
     rows, columns = free_distance.shape
@@ -226,7 +226,7 @@ def is_along_wall(free_distance, row, column, beside_row, beside_column):
     )
 
 
-@kernel
+@inlined
 def first_cell(at, u):
     """Return the cell ahead, the step to the next one, and -1 if the ray is on a grid line."""
     cell = math.floor(at)
@@ -237,7 +237,7 @@ def first_cell(at, u):
     return cell, 0, -1 if at == cell else 0
 
 
-@kernel
+@inlined
 def _crossing(x, u, cell, step):
     """Return the parameter at which the ray leaves ``cell`` along one axis; inf for never."""
     if step == 0:
@@ -245,7 +245,7 @@ def _crossing(x, u, cell, step):
     return (cell + (step > 0) - x) / u
 
 
-@kernel
+@inlined
 def _exit(x, per_u, cell, step, reach):
     """Return a parameter just before the ray leaves the cells up to ``reach`` away, or inf."""
     if step == 0:
@@ -254,7 +254,7 @@ def _exit(x, per_u, cell, step, reach):
     return (side - x) * per_u
 
 
-@kernel
+@inlined
 def _settled(x, u, cell, step, s):
     """
     Return the cell that traversal is in at ``s``, and the parameter at which it leaves that cell.
