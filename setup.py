@@ -29,7 +29,7 @@ setup(
     # What a robot imports: the core, the maps, the server and the nodes. The lower bounds of what
     # Ubuntu 24.04 has are that system's own releases.
     install_requires=[
-        'numba>=0.60',
+        'numba>=0.68',  # kernels/parts.py builds on its compiler pipeline
         'numpy>=1.26',
         'opencv-python-headless>=4.6',
         'pillow>=10.2',
