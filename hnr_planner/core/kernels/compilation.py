@@ -15,6 +15,7 @@ import logging
 import os
 import pickle
 import queue
+import signal
 import subprocess
 import sys
 import threading
@@ -26,6 +27,9 @@ from hnr_planner.core.kernels.modes import Mode, mode
 from hnr_planner.core.kernels.needs import known_needs, Need, need_of, Workload
 
 _log = logging.getLogger('hnr_planner')
+
+#: Ends of the child by a signal to all processes of a group, which ends this one as well.
+ENDED_BY_ORDER = (-signal.SIGINT, -signal.SIGTERM)
 
 
 class Status(NamedTuple):
@@ -113,7 +117,7 @@ class _Background:
                     continue
                 self.worked += self.heard - self.started
                 self.is_running = False
-                if self.is_ending:
+                if self.is_ending or code in ENDED_BY_ORDER:
                     return
                 if is_left:
                     self.give_up(f'the process that compiles kernels ended ({code})')
