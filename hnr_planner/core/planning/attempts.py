@@ -26,34 +26,40 @@ import numpy as np
 SearchType = TypeVar('SearchType', bound=Search)
 Found = TypeVar('Found')
 
-#: A path at most this many times as long as the lower bound is the shortest, up to margins.
+#: A path at most this many times as long as the lower bound counts as the shortest; it is so up to
+#: the margins at which it passes corners.
 PROVED = 1.0 + 1e-6
-#: Least decrease of the cost, as a fraction, for which a round counts as a gain.
+#: Least decrease of the cost of the best path, as a fraction of that cost, for which a further
+#: search counts as a gain.
 LEAST_GAIN = 1e-3
-#: Largest number of searches when paths are not free in the caller's coordinates.
+#: Largest number of searches of one attempt. A search is repeated where its path is not free in
+#: the caller's coordinates.
 RESTARTS_MAX = 100
-#: Purposes of random streams: to search, to shorten what was found.
+#: Purposes of random streams: to search for a path, and to shorten the path found.
 SEARCH, SHORTEN = 0, 1
 
 
 class Attempt(NamedTuple):
     """
-    One search, and the path that resulted.
+    One search, and the path that resulted from it.
 
     Attributes
     ----------
     status : PlannerStatus
+        How the search ended.
     search : PathSearch
+        The search in the state in which it ended.
     path : (m, dim)
-        Path in the caller's frame; (0, dim) when none was found.
+        The path in the caller's frame, improved; (0, dim) when none was found.
     cost : float
-        Cost that attempts minimize: the length, weighted near walls where a clearance is wanted.
+        Cost of ``path`` [m]: its length, weighted near walls where a clearance is requested; inf
+        when no path was found or the budget ended before its cost was known.
     first : FirstSolution or None
-        The path as found.
+        The path as found, before it was improved; None when no path was found.
     planner : str
         Name of the planner that made the path.
     lower_bound : float
-        Lower bound on the length of free paths, caller's units.
+        Lower bound on the length of free paths from start to goal [m].
 
     """
 
@@ -74,10 +80,13 @@ def attempt(
     optimizing: Budget | None = None,
 ) -> Attempt:
     """
-    Search once and improve the path that was found.
+    Search once and improve the path that was found; return the attempt of least cost.
 
-    With a budget for ``optimizing`` the planner ``auto`` also searches for the shortest path on a
-    grid. Any other planner is improved by further searches of itself only.
+    ``number`` selects the random streams, and ``began`` is the time at which the call began, on
+    the clock of ``working_time`` [s]. With a budget for ``optimizing`` the planner ``Auto`` also
+    searches for the shortest path with Polyanya, where the path found is not straight, the space
+    is a ``GridSpace`` and the goal has no radius. The path of any other planner is only shortened
+    and moved away from walls.
     """
     status, search, path = _search(request, number, budget)
     planner = getattr(search, 'made_by', request.planner.name)
@@ -100,7 +109,12 @@ def attempt(
 def _improved(
     request: Request, number: int, search: PathSearch, path: Floats, budget: Budget
 ) -> tuple[Floats, float]:
-    """Return a path (m, dim) shortened and moved away from walls as requested, and its cost."""
+    """
+    Return a path (k, dim) shortened and moved away from walls as requested, and its cost [m].
+
+    ``path`` (m, dim) is in the caller's frame. It is shortened only where the request asks for it
+    and the search did not find a taut path.
+    """
     if request.simplify and not search.taut and len(path) > 2:
         space, rng, found = request.space, request.stream(number, SHORTEN), path
         path = budget.within(lambda: shorten(space, found, rng, budget), found)
@@ -108,7 +122,11 @@ def _improved(
 
 
 def _with_cost(request: Request, path: Floats, budget: Budget) -> tuple[Floats, float]:
-    """Return a path (m, dim) moved away from walls as requested, and its cost."""
+    """
+    Return a path (k, dim) moved away from walls as requested, and its cost [m].
+
+    The cost is inf where a limit of the budget interrupts its computation.
+    """
     path = with_clearance(request, path, budget)
     cost = budget.within(lambda: path_cost(request.space, path, request.clearance), math.inf)
     return path, cost
@@ -125,7 +143,10 @@ def optimize(
     """
     Search for better paths with further streams; return the best, and the work of all searches.
 
-    It ends after ``patience`` consecutive rounds without a gain.
+    Each round is one further attempt. The rounds end when ``best`` is straight or proved to be
+    the shortest, after ``rounds`` rounds, after ``patience`` consecutive rounds that lower the
+    cost by less than the fraction ``LEAST_GAIN``, or when a limit of the budget is met. ``began``
+    is the time at which the call began, on the clock of ``working_time`` [s].
     """
     work, number, idle = Work.of(best.search), 1, 0
     while number <= rounds and idle < patience and budget.stop() is None:
@@ -141,7 +162,12 @@ def optimize(
 
 
 def with_clearance(request: Request, path: Floats, budget: Budget) -> Floats:
-    """Return a path (m, dim) moved away from walls, where a clearance is requested."""
+    """
+    Return a path (k, dim) of the caller's frame moved away from walls, within the budget.
+
+    It is ``path`` (m, dim) itself where the request has no clearance or a limit interrupts the
+    work.
+    """
     if request.clearance == 0.0:
         return path
     space, clearance = request.space, request.clearance
@@ -151,7 +177,11 @@ def with_clearance(request: Request, path: Floats, budget: Budget) -> Floats:
 def _search(
     request: Request, number: int, budget: Budget
 ) -> tuple[PlannerStatus, PathSearch, Floats]:
-    """Search for a path (m, dim) that is free in the caller's coordinates."""
+    """
+    Return the status of a search, the search, and its path (m, dim), caller's frame.
+
+    The path is free in the caller's coordinates; it is (0, dim) where none was found.
+    """
 
     def start(salt: int) -> PathSearch:
         return request.planner.start(request.problem, request.stream(number, SEARCH, salt))
@@ -173,19 +203,22 @@ def search_until_free(
     budget: Budget,
 ) -> tuple[PlannerStatus, SearchType, Found | None]:
     """
-    Search until a path is free in the caller's coordinates, or a limit is met.
+    Search until a path is free in the caller's coordinates; return (status, search, found).
 
-    A path so close to a corner that those coordinates round it into the obstacle does not count:
-    then the search is repeated with another stream.
+    A path so close to a corner that the caller's coordinates round it into the obstacle does not
+    count: then the search is repeated with another random stream, with at most ``RESTARTS_MAX``
+    searches in all. ``found`` is None where a limit was met or no path was found.
 
     Parameters
     ----------
     start : callable
-        Starts search number ``k``, 0 for the first.
+        Returns a new search with the random stream number ``k``, 0 for the first.
     found_by : callable
-        Returns what a solved search found; None when that is not free.
+        Returns the path, or other result, of a solved search; None when that is not free in the
+        caller's coordinates.
     budget : Budget
-        Limits of all searches together.
+        Limits on the work: the deadline holds for all searches together, ``max_iterations`` for
+        each of them.
 
     """
     for salt in range(RESTARTS_MAX):
@@ -202,7 +235,12 @@ def search_until_free(
 
 
 def _in_caller_s_frame(request: Request, points: Floats) -> Floats:
-    """Convert a path (m, dim) from the kernel frame; its ends are exactly the caller's."""
+    """
+    Convert a path (m, dim) from the kernel frame to the caller's frame.
+
+    The first point is exactly the request's start, and the last one exactly its goal where the
+    path ends there.
+    """
     path = request.space.from_kernel(points)
     path[0] = request.start
     if points[-1].tolist() == request.problem.goal.tolist():
@@ -211,18 +249,27 @@ def _in_caller_s_frame(request: Request, points: Floats) -> Floats:
 
 
 def straight_length(request: Request) -> float:
-    """Return the straight distance from the start to the goal region: no path is shorter."""
+    """Return the straight distance [m] from the start to the goal region: no path is shorter."""
     return max(math.dist(request.start, request.goal) - request.goal_radius, 0.0)
 
 
 def _lower_bound(request: Request, search: PathSearch) -> float:
-    """Return the lower bound on lengths that a search has come to, caller's units."""
+    """
+    Return a lower bound [m] on the length of free paths from start to goal.
+
+    It is the bound of the search where that has one, and at least the straight distance.
+    """
     bound = getattr(search, 'lower_bound', 0.0) * request.space.scale
     return max(bound, straight_length(request))
 
 
 def _shortest_path(request: Request, budget: Budget) -> tuple[Floats | None, float]:
-    """Return the shortest path (m, 2), None where it is not found in time, and a lower bound."""
+    """
+    Return the shortest path (m, 2), caller's frame, or None, and a lower bound on its length [m].
+
+    The path is None where a limit is met first, where the space is no ``GridSpace``, or where the
+    goal has a radius above 0.
+    """
     space = request.space
     if not isinstance(space, GridSpace) or request.goal_radius > 0.0:
         return None, straight_length(request)

@@ -10,18 +10,20 @@ import numpy as np
 
 class Bins(NamedTuple):
     """
-    Square bins, numbered row by row.
+    Square bins over the first two coordinates of a box, numbered row by row from 0.
+
+    The box is surrounded by a rim of empty bins, one bin wide.
 
     Attributes
     ----------
     lower : (dim,)
-        Corner of the box, where the bins inside the rim begin.
+        Corner of the box with the least coordinates, where the bins inside the rim begin.
     side : float
-        Side of a bin.
+        Length of the side of a bin, in the unit of ``lower``.
     columns : int
-        Bins in a row, those of the rim included.
+        Number of bins in a row, two bins of the rim included.
     rows : int
-        Rows, those of the rim included.
+        Number of rows, two rows of the rim included.
 
     """
 
@@ -40,7 +42,7 @@ def make_bins(lower, upper, side):
 
 @kernel
 def bin_of(bins, x):
-    """Return the number of the bin that holds ``x`` (dim,)."""
+    """Return the number of the bin that holds ``x`` (dim,), a point of the box."""
     column = 1 + math.floor((x[0] - bins.lower[0]) / bins.side)
     row = 1 + math.floor((x[1] - bins.lower[1]) / bins.side) if len(x) > 1 else 1
     return row * bins.columns + column

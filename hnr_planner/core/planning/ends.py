@@ -16,15 +16,16 @@ import numpy as np
 @dataclass(frozen=True)
 class Allowance:
     """
-    How far the ends of a request may be moved, validated.
+    Validated limits on how far the ends of a request may be moved.
 
     Attributes
     ----------
     goal_tolerance : float
         Distance [m] within which a goal that is blocked or cannot be reached is replaced by the
-        nearest point that can be reached.
+        nearest point that can be reached from the start; 0 where it may not be moved.
     start_escape : float
-        Length [m] of the longest straight segment from a start in inflated cells to free space.
+        Length [m] of the longest straight segment from a start that is not free to free space; 0
+        where the start may not be moved.
 
     """
 
@@ -33,7 +34,12 @@ class Allowance:
 
 
 def check_allowance(space: Space, goal_tolerance: float, start_escape: float) -> Allowance:
-    """Return the allowance that a caller's arguments make, or raise RequestError."""
+    """
+    Return the validated allowance for a space, or raise RequestError.
+
+    A ``goal_tolerance`` [m] above 0 needs a space with ``nearest_reachable``, and a
+    ``start_escape`` [m] above 0 needs a ``GridSpace``.
+    """
     allowance = Allowance(
         check_number('goal_tolerance', goal_tolerance, 0.0),
         check_number('start_escape', start_escape, 0.0),
@@ -62,15 +68,17 @@ class MovedRequest:
     request : Request
         The request with the ends as moved.
     outcome : (PlannerStatus, str) or None
-        Its outcome when it needs no search (``outcome_without_search``).
+        Outcome of the moved request where it needs no search (``outcome_without_search``); None
+        where it needs one.
     start : (dim,)
-        The start before it was moved.
+        The start before it was moved, caller's frame [m].
     goal_offset : float
         Distance by which the goal was moved [m].
     escape : float
         Distance by which the start was moved [m].
     reasons : str
-        Why they were moved: a suffix of the result's message.
+        Why the ends were moved or could not be moved: a suffix of the result's message; empty
+        where no move was tried.
 
     """
 
@@ -82,7 +90,12 @@ class MovedRequest:
     reasons: str = ''
 
     def restore_ends(self, result: PlanResult) -> PlanResult:
-        """Return the result for the original start: its paths begin with the escape."""
+        """
+        Return the result for the start before it was moved.
+
+        Where the request is solved and the start was moved, all paths begin with the segment from
+        the old start to the new one, and the lengths include it. The samples are left as they are.
+        """
         result = replace(result, message=result.message + self.reasons)
         if result.status is not PlannerStatus.SOLVED:
             return result
@@ -110,9 +123,11 @@ class MovedRequest:
 
 def move_ends(request: Request, allowance: Allowance) -> MovedRequest:
     """
-    Move the ends of a request where they are not free, within what is allowed.
+    Return a request with its ends moved where they are not free or not connected.
 
-    A goal that is free and can be reached is never moved.
+    The start is moved only if it is not free, and the goal only if it is not free or cannot be
+    reached from the start, each by at most what ``allowance`` states. An end that has no other
+    point within this distance stays where it is.
     """
     moved = MovedRequest(request, outcome_without_search(request), request.start)
     if moved.outcome is not None and allowance.start_escape > 0.0:
@@ -123,7 +138,7 @@ def move_ends(request: Request, allowance: Allowance) -> MovedRequest:
 
 
 def _with_free_start(moved: MovedRequest, radius: float) -> MovedRequest:
-    """Move a start that is not free to a free point within ``radius`` [m]."""
+    """Move a start that is not free to a free point within ``radius`` [m], where there is one."""
     request, (status, why) = moved.request, moved.outcome or (None, '')
     if status is not PlannerStatus.INVALID_START or not isinstance(request.space, GridSpace):
         return moved
@@ -143,7 +158,12 @@ def _with_free_start(moved: MovedRequest, radius: float) -> MovedRequest:
 
 
 def _with_reachable_goal(moved: MovedRequest, tolerance: float) -> MovedRequest:
-    """Move a goal that cannot be reached to the nearest point that can, within ``tolerance``."""
+    """
+    Move a goal that is blocked or out of reach to the nearest point that can be reached.
+
+    The goal stays where it is if that point is farther away than ``tolerance`` [m]. A moved goal
+    has no radius.
+    """
     request, (status, why) = moved.request, moved.outcome or (None, '')
     if status not in (PlannerStatus.INVALID_GOAL, PlannerStatus.UNREACHABLE):
         return moved

@@ -4,7 +4,7 @@ Escape from a start that is not free: a short segment to free space, never throu
 The position of a robot may be blocked in the map: a little too near to a wall, or in an unknown
 cell. The escape is a straight segment to free space that crosses nothing but free cells, cells
 that only inflation blocks, and the cell of the start itself. From a start in an obstacle there is
-none.
+no escape.
 """
 
 from hnr_planner.core.checks import Floats
@@ -15,18 +15,20 @@ from numpy.typing import NDArray
 
 def escape_point(space: GridSpace, start: Floats, goal: Floats, radius: float) -> Floats | None:
     """
-    Return the nearest free point (2,) [m] that a segment reaches; None when there is none.
+    Return the free point (2,) [m] to which a start escapes; None when there is none.
 
-    Points from which the goal can be reached are preferred. In each free cell the point nearest to
-    the start is tried and, where that is hidden behind a corner, the centre. For a start outside
-    the map there is none: what lies between it and the map is unknown.
+    It is the nearest point of free space, at most ``radius`` away, that a straight segment from
+    the start reaches through cells that are free or only inflated, or hold the start. Any point
+    from which the goal can be reached comes before all others. Tested are the centre of each free
+    cell and the point of the cell nearest to the start. A start in an obstacle has no such point,
+    nor has one outside the map: what lies between it and the map is unknown.
 
     Parameters
     ----------
     space : GridSpace
         The map.
     start, goal : (2,)
-        Start, and goal of the path to be planned [m].
+        Start and goal of the path to be planned, caller's frame [m].
     radius : float
         Length of the longest escape [m].
 
@@ -55,7 +57,11 @@ def escape_point(space: GridSpace, start: Floats, goal: Floats, radius: float) -
 
 
 def _own_cell(space: GridSpace, start: Floats) -> NDArray[np.int64] | None:
-    """Return the (column, row) of the cell that holds a start; None in an obstacle."""
+    """
+    Return the (column, row) of the cell that holds ``start`` (2,) [m], caller's frame.
+
+    It is None where every cell that holds the start is an obstacle or outside the map.
+    """
     here = space.to_cells(start)
     rows, columns = space.shape
     # A start on an edge or corner is held by each cell that touches it.
@@ -71,10 +77,12 @@ def _free_points(
     components: NDArray[np.int32], first: NDArray[np.int64], here: Floats, margin: float
 ) -> tuple[Floats, NDArray[np.int32]]:
     """
-    Return points (k, 2) of the free cells of a window, and the component (k,) of each.
+    Return points (k, 2) of the free cells of a window, and the component (k,) of each point.
 
-    In cells of the whole grid; ``first`` is the (column, row) where the window begins. A shortest
-    escape ends where it enters free space, so cells with free neighbours only are left out.
+    For each cell these are the point nearest to ``here`` (2,), ``margin`` inside the cell, and the
+    centre. Points and ``here`` are in units of cells, from the corner of the whole grid; ``first``
+    is the (column, row) where the window begins. A shortest escape ends where it enters free
+    space, so cells all of whose neighbours are free are left out.
     """
     import cv2  # only where it is needed: it takes long to import
 

@@ -1,16 +1,17 @@
 """
 Homology classes of paths: on which side a path passes every island, as a signature.
 
-An island is an obstacle with free space all around it. A ray goes straight up from a point in
-each; the signature of a path adds the island's number where the path crosses its ray to the right
-and takes it away where it crosses to the left (Bhattacharya, Likhachev and Kumar, "Topological
-constraints in search-based robot path planning", 2012). Two paths with the same ends have the same
-signature when the loop that both make winds around no island, and another one when it does: then
-neither can be deformed into the other.
+An island is an obstacle with free space all around it. A ray goes straight up from a point in each
+island. The signature of a path is a sum: the island's number is added where the path crosses its
+ray to the right and subtracted where the path crosses it to the left (Bhattacharya, Likhachev and
+Kumar, "Topological constraints in search-based robot path planning", 2012). Two paths with the
+same ends have the same signature when the loop that both make winds around no island, and
+different signatures when it winds around one: then neither can be deformed into the other.
 
-Numbers are random words, added modulo 2^64, so that one word holds the windings around all
-islands: two classes have the same one with a chance of 2^-64. In the kernel frame, two dimensions.
-Without islands every path has the signature 0, and may pass everything on any side.
+The numbers of islands are random integers of 64 bits, added modulo 2^64, so that one integer holds
+the windings around all islands: two classes have the same signature with a probability of 2^-64.
+Points are in the kernel frame, of two dimensions. Without islands every path has the signature 0,
+and may pass any obstacle on any side.
 """
 
 from typing import NamedTuple
@@ -23,14 +24,15 @@ from numpy.typing import NDArray
 
 class Islands(NamedTuple):
     """
-    A point in each island, from left to right.
+    One point in each island, ordered from left to right.
 
     Attributes
     ----------
     x, y : (k,)
-        The points.
+        Coordinates of the points, kernel frame.
     numbers : (k,) int64
-        Number that is added when the ray of each is crossed.
+        Number of each island. It is added to the signature of a path that crosses, to the right,
+        the ray that goes up from the island's point, and subtracted for a crossing to the left.
 
     """
 
@@ -40,7 +42,7 @@ class Islands(NamedTuple):
 
 
 def islands_at(points: Floats) -> Islands:
-    """Return the islands that hold ``points`` (k, 2), one each."""
+    """Return the islands at ``points`` (k, 2), kernel frame, one point in each island."""
     x, y = points[np.argsort(points[:, 0], kind='stable')].T
     words = np.random.default_rng(0).integers(-(2**63), 2**63, len(points))
     return Islands(x.copy(), y.copy(), words)
@@ -52,7 +54,7 @@ NO_ISLANDS = islands_at(np.empty((0, 2)))
 
 @kernel
 def crossings(islands, a, b):
-    """Return the signature (int64) of the segment a-b, points (2,)."""
+    """Return the signature (int64) of the segment from ``a`` to ``b`` (2,), kernel frame."""
     signature = np.int64(0)
     if len(islands.x) == 0 or a[0] == b[0]:
         return signature

@@ -15,7 +15,8 @@ from hnr_planner.core.planning.result import PlannerStatus
 
 Value = TypeVar('Value')
 
-#: Transitions in the first batch; later ones last about as long as the bounds below [s].
+#: Number of transitions in the first batch of a search, and bounds on the duration of a batch [s]:
+#: the next batch is twice as large after a shorter one, and half as large after a longer one.
 FIRST_BATCH = 64
 BATCH_TIME = (0.25e-3, 0.5e-3)
 
@@ -32,9 +33,9 @@ class Budget:
     max_iterations : float
         Transitions allowed for one search; may be inf.
     cancel : Event or None
-        Ends everything once it is set.
+        Event that ends all work within the budget once the event is set.
     cut : bool
-        Whether the clock or a cancellation has ended something.
+        Whether the clock or a cancellation has ended some of the work; never reset.
 
     """
 
@@ -44,7 +45,11 @@ class Budget:
     cut: bool = field(init=False, default=False)
 
     def stop(self) -> PlannerStatus | None:
-        """Return the reason why work has to stop now; None while it may go on."""
+        """
+        Return why work has to stop now, CANCELLED or TIMEOUT; None while it may go on.
+
+        The call sets ``cut`` where work has to stop.
+        """
         stopped = None
         if self.cancel is not None and self.cancel.is_set():
             stopped = PlannerStatus.CANCELLED
@@ -54,7 +59,12 @@ class Budget:
         return stopped
 
     def within(self, work: Callable[[], Value], otherwise: Value) -> Value:
-        """Return what ``work`` returns, or ``otherwise`` where a limit interrupts its kernels."""
+        """
+        Return the result of ``work()``, or ``otherwise`` where a limit interrupts its kernels.
+
+        The limits are the deadline and the cancellation of this budget. An interruption that
+        another condition caused is raised again.
+        """
         try:
             with interruptible(lambda: self.stop() is not None):
                 return work()
@@ -66,10 +76,10 @@ class Budget:
 
 def run(search: Search, budget: Budget) -> PlannerStatus:
     """
-    Advance a search until it is solved or a limit is met, and return which of them it was.
+    Advance a search until it is solved or a limit is met; return the status that ended it.
 
-    The limits are checked between batches. The size of the batches follows the clock so that this
-    happens about every half a millisecond; it has no effect on what is found.
+    The limits are checked between batches of transitions. The size of a batch follows the clock,
+    so that a check happens about every half a millisecond; it has no effect on the path found.
     """
     status = budget.within(lambda: _advance(search, budget), None)
     return status or budget.stop() or PlannerStatus.TIMEOUT

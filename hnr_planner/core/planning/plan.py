@@ -1,8 +1,8 @@
 """
 ``plan``: find a path for one request.
 
-The planners search and count. ``plan`` validates the request, enforces its limits and builds the
-result.
+The planners search and count their work. ``plan`` validates the request, enforces its limits and
+builds the result.
 """
 
 from dataclasses import replace
@@ -66,7 +66,7 @@ def plan(
     **settings: Any,
 ) -> PlanResult:
     """
-    Find a free path from start to goal.
+    Find a free path from start to goal, and return it in a result with its status.
 
     Parameters
     ----------
@@ -83,11 +83,11 @@ def plan(
     time_limit : float
         Seconds for the whole call, inf for no limit. Compilation does not count.
     max_iterations : int, optional
-        Transitions allowed for one search.
+        Number of transitions allowed for one search; no limit when left out.
     seed : int, optional
-        Fresh when left out; the result names the one used.
+        Seed of all random streams; a fresh one when left out. The result names the seed used.
     simplify : bool
-        Whether the path is shortened by visibility.
+        Whether sections of the path are replaced by free straight segments to shorten it.
     clearance : float
         Distance to obstacles [m] that the path keeps where it can; narrower passages are passed
         in their middle. 0 for the shortest path. It needs ``simplify`` and a space that
@@ -114,7 +114,7 @@ def plan(
         message state it. It crosses no occupied cell; from inside an obstacle there is none. It
         needs a ``GridSpace``.
     cancel : threading.Event, optional
-        Ends the call once it is set.
+        Event that ends the call once the event is set.
     **settings
         Settings of the planner that ``algorithm`` names.
 
@@ -178,7 +178,12 @@ def _refuse_trajectories(settings: dict[str, Any]) -> None:
 
 
 def _move_ends_within(budget: Budget, request: Request, allowance: Allowance) -> MovedRequest:
-    """Move the ends of a request where that is needed; fail where a limit interrupts it."""
+    """
+    Return the request with its ends moved where needed and allowed (``move_ends``).
+
+    Where a limit of the budget interrupts the move, return the request with the outcome of that
+    limit instead.
+    """
     moved = budget.within(lambda: move_ends(request, allowance), None)
     if moved is not None:
         return moved
@@ -189,7 +194,12 @@ def _move_ends_within(budget: Budget, request: Request, allowance: Allowance) ->
 def _result_of_search(
     request: Request, effort: Effort, budget: Budget, began: float
 ) -> PlanResult:
-    """Search, search again for a better path where that is requested, and build the result."""
+    """
+    Search for a path and return the result.
+
+    Where the request asks for it and a path was found, further searches try to find a better one.
+    ``began`` is the time at which the call began, on the clock of ``working_time`` [s].
+    """
     optimizing = effort.optimizing(budget, began) if effort.optimizes else None
     best = attempt(request, 0, budget, began, optimizing)
     first, work = best.first, Work.of(best.search)
@@ -220,7 +230,12 @@ def _result_of_search(
 def _result_without_search(
     request: Request, status: PlannerStatus, message: str, budget: Budget, began: float
 ) -> PlanResult:
-    """Build the result of a request that needs no search to fail or to succeed."""
+    """
+    Return the result of a request whose outcome, ``status`` and ``message``, needs no search.
+
+    The path of a solved one is the straight segment to an exact goal, or the start twice where the
+    goal has a radius, moved away from walls where a clearance is requested.
+    """
     path, length, samples, first = np.empty((0, len(request.start))), math.inf, 0, None
     if status is PlannerStatus.SOLVED:
         end = request.goal if request.goal_radius == 0.0 else request.start
@@ -248,7 +263,7 @@ def _result_without_search(
 
 
 def _message(request: Request, best: Attempt, iterations: int, began: float) -> str:
-    """Return a description of how a search ended."""
+    """Return a description of how the search of ``best`` ended, with lengths [m] and counts."""
     if best.status is PlannerStatus.SOLVED and best.first is not None:
         found = f'path of {path_length(best.path):.6g} m with {len(best.path)} vertices'
         as_found = request.simplify and not best.search.taut and best.path is best.first.path
@@ -259,7 +274,11 @@ def _message(request: Request, best: Attempt, iterations: int, began: float) -> 
 
 
 def _proof(request: Request, best: Attempt) -> str:
-    """Return what is proved of the length of a path, to follow on a message."""
+    """
+    Return what the lower bound proves of the length of the best path, as the end of a message.
+
+    It is empty where the bound is no better than the straight distance.
+    """
     if best.lower_bound <= straight_length(request):
         return ''
     ratio = path_length(best.path) / best.lower_bound

@@ -23,24 +23,24 @@ GROWTH = 8
 
 class Problem(NamedTuple):
     """
-    A planning problem in the kernel frame of a space, as it is passed to kernels.
+    A planning problem, as it is passed to kernels; all values are in the space's kernel frame.
 
     Attributes
     ----------
     space : NamedTuple
-        The compiled space.
+        The space as kernels take it (``Space.data``).
     lower, upper : (dim,)
-        Corners of a box around the space.
+        Opposite corners of a box around the space: least and largest coordinates.
     start, goal : (dim,)
-        Start and centre of the goal region.
+        Start, and goal or centre of the goal region.
     goal_radius : float
         Radius of the goal region; 0 when the path has to end exactly at the goal.
     margin : float
-        Distance from a chord's end at which one stops.
+        Distance that a point drawn on a chord keeps from the ends of the chord.
     typical_clearance : float
-        Rough mean distance from a free point to the boundary.
+        Rough mean distance from a free point to the boundary of free space.
     scale : float
-        Caller's units [m] in one unit of the kernel frame.
+        Length of one unit of the kernel frame in the caller's units [m].
 
     """
 
@@ -56,7 +56,11 @@ class Problem(NamedTuple):
 
 
 def make_problem(space: Space, start: Floats, goal: Floats, goal_radius: float) -> Problem:
-    """Return the problem of going from start to goal (dim,) in a space, caller's frame."""
+    """
+    Return the problem of a path from start to goal in a space, converted to the kernel frame.
+
+    ``start`` and ``goal`` (dim,) and ``goal_radius`` are in the caller's frame [m].
+    """
     lower, upper = space.kernel_bounds
     return Problem(
         space=space.data,
@@ -73,7 +77,12 @@ def make_problem(space: Space, start: Floats, goal: Floats, goal_radius: float) 
 
 @kernel
 def reaches_goal(problem, x):
-    """Return whether ``x`` (dim,) lies in the goal region, or an exact goal is visible from it."""
+    """
+    Return whether ``x`` (dim,), kernel frame, reaches the goal of a problem.
+
+    With a goal radius above 0, ``x`` has to lie in the goal region; else the straight segment from
+    ``x`` to the goal has to be free.
+    """
     if problem.goal_radius == 0.0:
         return segment_is_free(problem.space, x, problem.goal)
     squared = 0.0
@@ -83,30 +92,30 @@ def reaches_goal(problem, x):
 
 
 class Search(Protocol):
-    """A running search."""
+    """Protocol of a running search, which advances by counts of transitions."""
 
     @property
     def iterations(self) -> int:
-        """Transitions handled: proposals drawn from the space, accepted or not."""
+        """Number of transitions handled: proposals inside the space, accepted or not."""
 
     @property
     def solved(self) -> bool:
-        """Whether the search is over: its path is found."""
+        """Whether the search has found a path."""
 
     @property
     def samples(self) -> Floats:
-        """Start and accepted vertices (k, dim), oldest first."""
+        """Start and accepted vertices (k, dim), kernel frame, oldest first."""
 
     @property
     def parents(self) -> NDArray[np.int64]:
-        """Index (k,) of the sample that each was reached from; -1 for the roots."""
+        """Index (k,) in ``samples`` from which each sample was reached; -1 for a tree's root."""
 
     @property
     def counts(self) -> dict[str, int]:
-        """Further counts by name."""
+        """Further counts of the planner by name."""
 
     def advance(self, n_iterations: int) -> None:
-        """Handle at most ``n_iterations`` further transitions, fewer once solved."""
+        """Handle at most ``n_iterations`` further transitions, fewer once the search is solved."""
 
 
 class Work(NamedTuple):
@@ -117,56 +126,65 @@ class Work(NamedTuple):
 
     @classmethod
     def of(cls, search: Search) -> 'Work':
-        """Return the work of one search."""
+        """Return the work of one search so far."""
         return cls(search.iterations, search.counts)
 
     def plus(self, other: 'Work') -> 'Work':
-        """Return the work of both."""
+        """Return the sum of this work and ``other``, count by count."""
         names = {**self.counts, **other.counts}
         counts = {name: self.counts.get(name, 0) + other.counts.get(name, 0) for name in names}
         return Work(self.iterations + other.iterations, counts)
 
 
 class PathSearch(Search, Protocol):
-    """A running search for a path."""
+    """Protocol of a running search for a path."""
 
     @property
     def path(self) -> Floats:
-        """Path (m, dim) of a solved search: from the start into the region, or to the goal."""
+        """Path (m, dim) of a solved search, kernel frame: from the start to goal or region."""
 
     @property
     def taut(self) -> bool:
-        """Whether the path of a solved search is taut: shortening it gains nothing."""
+        """Whether the path of a solved search is taut already, so that it is not shortened."""
 
 
 class Planner(Protocol):
-    """A planner: its name and settings; ``start`` begins a search."""
+    """Protocol of a planner: a value with a name and settings whose ``start`` begins a search."""
 
     @property
     def name(self) -> str:
         """Name of the planner in results."""
 
     def start(self, problem: Problem, rng: Stream) -> PathSearch:
-        """Start a search for a path that solves ``problem``, with a random stream."""
+        """Return a new search for a path that solves ``problem``; it draws from ``rng`` only."""
 
 
 def for_space(planner: Planner, space: Space) -> Planner:
-    """Return a planner with the data that it needs of a space, where it needs any."""
+    """
+    Return the planner for a space.
+
+    It is ``planner`` itself, unless that has a method ``for_space``, whose result is returned.
+    """
     bind = getattr(planner, 'for_space', None)
     return planner if bind is None else bind(space)
 
 
 def to_goal(problem: Problem, points: Floats) -> Floats:
-    """Return ``points`` (m, dim), whose last one reaches the goal, with an exact goal added."""
+    """
+    Return the path of ``points`` (m, dim), kernel frame, whose last point reaches the goal.
+
+    Where the goal has no radius, the goal itself is added as the last point.
+    """
     return points if problem.goal_radius > 0.0 else np.vstack([points, problem.goal])
 
 
 def with_capacity(array: NDArray[Any], rows: int) -> NDArray[Any]:
     """
-    Return ``array``, or a copy several times as long when it has fewer than ``rows`` rows.
+    Return ``array``, or a longer copy when it has fewer than ``rows`` rows.
 
-    The clock is not checked during a copy, so copies are rare. The operating system provides
-    memory for rows only once they are written.
+    The copy has ``rows`` rows, or ``GROWTH`` times those of ``array`` if that is more: the clock
+    is not checked during a copy, so copies are made rarely. The operating system provides memory
+    for rows only once they are written.
     """
     if len(array) >= rows:
         return array

@@ -24,11 +24,11 @@ class PlannerEntry(NamedTuple):
     Attributes
     ----------
     name : str
-        Name that ``algorithm`` takes.
+        Name of the planner as a value of the argument ``algorithm``.
     module, class_name : str
-        Location of the class, which is imported when a planner is made.
+        Module and name of the planner's class, which is imported when a planner is made.
     summary : str
-        One line on how it searches.
+        One line on how the planner searches.
 
     """
 
@@ -38,7 +38,7 @@ class PlannerEntry(NamedTuple):
     summary: str
 
     def load(self) -> type[Any]:
-        """Return the class, a dataclass whose fields are the planner's settings."""
+        """Import and return the planner's class, a dataclass whose fields are its settings."""
         kind: type[Any] = getattr(import_module(self.module), self.class_name)
         return kind
 
@@ -85,14 +85,14 @@ def make_planner(
     algorithm: Any, settings: dict[str, Any], entries: Sequence[PlannerEntry] = PLANNERS
 ) -> Any:
     """
-    Return the planner that ``algorithm`` means, built with ``settings`` where it is a name.
+    Return the planner that ``algorithm`` names, built with ``settings``, or the planner given.
 
     Parameters
     ----------
     algorithm : str or planner
         A name of ``entries``, or a planner value, which is returned as it is.
     settings : dict
-        Settings of the planner named.
+        Settings of the planner that ``algorithm`` names; empty with a planner value.
     entries : sequence of PlannerEntry
         The planners to choose from.
 

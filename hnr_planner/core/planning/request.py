@@ -1,4 +1,4 @@
-"""Validation of planning requests, and the outcome of those that need no search."""
+"""Validation of planning requests, and the outcome of the requests that need no search."""
 
 from dataclasses import dataclass, replace
 import math
@@ -25,7 +25,8 @@ from numpy.typing import ArrayLike
 
 #: Rounds of optimization for each second of ``optimize_for``, and consecutive rounds without a
 #: gain that end it. On an office map a round takes about a millisecond on a busy machine, so the
-#: clock hardly ever cuts; after five rounds .02 % are left to gain.
+#: number of rounds nearly always ends the optimization before the clock does;
+#: after five rounds without a gain, .02 % of the length are left to gain.
 ROUNDS_PER_SECOND, PATIENCE = 300, 5
 #: Largest clearance that may be requested [m].
 CLEARANCE_MAX = 1e6
@@ -43,11 +44,12 @@ class Effort:
     max_iterations : float
         Transitions allowed for one search; may be inf.
     optimize_for : float
-        Time of the call for further searches for a shorter path [s]; 0 when left out.
+        Time from the beginning of the call after which no further search for a shorter path goes
+        on [s]; 0 when left out.
     optimize_iterations : int
-        Number of further searches for a shorter path; 0 when left out.
+        Largest number of further searches for a shorter path; 0 when left out.
     cancel : Event or None
-        Ends the call once it is set.
+        Event that ends the call once the event is set.
 
     """
 
@@ -59,27 +61,42 @@ class Effort:
 
     @property
     def optimizes(self) -> bool:
-        """Whether to search further for a shorter path."""
+        """Whether the call goes on searching for a shorter path after the first one."""
         return self.optimize_for > 0.0 or self.optimize_iterations > 0
 
     @property
     def optimize_rounds(self) -> float:
-        """Largest number of further searches for a shorter path; inf for no limit."""
+        """
+        Largest number of further searches for a shorter path; inf for no limit.
+
+        It is ``optimize_iterations`` where that is above 0; else it is in proportion to
+        ``optimize_for``.
+        """
         if self.optimize_iterations == 0 and self.optimize_for < math.inf:
             return math.ceil(ROUNDS_PER_SECOND * self.optimize_for)
         return self.optimize_iterations or math.inf
 
     @property
     def optimize_patience(self) -> float:
-        """Number of consecutive searches without a gain that end the optimization."""
+        """
+        Number of consecutive searches without a gain that end the optimization.
+
+        It is inf, no limit, where ``optimize_iterations`` is above 0.
+        """
         return PATIENCE if self.optimize_iterations == 0 else math.inf
 
     def budget(self, began: float) -> Budget:
-        """Return the budget of a call that began at ``began``, in ``working_time`` [s]."""
+        """Return the budget of a call that began at ``began``, on the clock ``working_time``."""
         return Budget(began + self.time_limit, self.max_iterations, self.cancel)
 
     def optimizing(self, budget: Budget, began: float) -> Budget:
-        """Return the share of a call's budget for further searches for a shorter path."""
+        """
+        Return ``budget`` with its deadline at most ``optimize_for`` seconds after ``began``.
+
+        This is the budget of the further searches for a shorter path. ``began`` is the time on
+        the clock of ``working_time`` [s] at which the call began. The deadline stays as it is
+        where ``optimize_for`` is 0.
+        """
         until = began + (self.optimize_for or math.inf)
         return replace(budget, deadline=min(budget.deadline, until))
 
@@ -92,7 +109,7 @@ def check_effort(
     optimize_iterations: int,
     cancel: Event | None,
 ) -> Effort:
-    """Return the limits that a caller's arguments make, or raise RequestError."""
+    """Return a caller's limits on the work, or raise RequestError where one is malformed."""
     if cancel is not None and not callable(getattr(cancel, 'is_set', None)):
         raise RequestError(f'cancel must be an event such as threading.Event(), got {cancel!r}')
     return Effort(
@@ -116,15 +133,15 @@ class Request:
     start, goal : (dim,)
         Points in the caller's frame [m].
     goal_radius : float
-        Radius of the goal region, caller's units; 0 for an exact goal.
+        Radius of the goal region around ``goal`` [m]; 0 for a path that ends exactly at ``goal``.
     planner : Planner
         The planner that searches.
     simplify : bool
         Whether the path is shortened.
     clearance : float
-        Distance to obstacles that the path keeps where it can, caller's units [m].
+        Distance to obstacles [m] that the path keeps where there is room for it; 0 for none.
     seed : int
-        The seed of every draw.
+        Seed from which every random stream of the request follows.
     problem : Problem
         The same problem in the kernel frame.
 
@@ -141,7 +158,7 @@ class Request:
     problem: Problem
 
     def stream(self, *purpose: int) -> Stream:
-        """Return the random stream of one purpose, given as numbers; all follow from the seed."""
+        """Return the random stream that follows from the seed and the numbers of a purpose."""
         return stream(self.seed, *purpose)
 
     def moved(
@@ -150,7 +167,11 @@ class Request:
         goal: Floats | None = None,
         goal_radius: float | None = None,
     ) -> 'Request':
-        """Return the same request with the ends given, caller's frame and units."""
+        """
+        Return the request with another start (dim,), goal (dim,) or goal radius, caller's frame.
+
+        An argument that is None keeps the value of this request.
+        """
         start, goal = (b if a is None else a for a, b in ((start, self.start), (goal, self.goal)))
         goal_radius = self.goal_radius if goal_radius is None else goal_radius
         problem = make_problem(self.space, start, goal, goal_radius)
@@ -169,7 +190,11 @@ def check_request(
     algorithm: str | Planner = 'auto',
     settings: dict[str, Any] | None = None,
 ) -> Request:
-    """Return the request that a caller's arguments make, or raise RequestError."""
+    """
+    Return the validated request for a path, or raise RequestError where an argument is malformed.
+
+    Whether start and goal are free is not checked here: see ``outcome_without_search``.
+    """
     start, goal = check_point('start', start, space.dim), check_point('goal', goal, space.dim)
     goal_radius = check_number('goal_radius', goal_radius, 0.0)
     planner = for_space(make_planner(algorithm, settings or {}), space)
@@ -187,7 +212,11 @@ def check_request(
 
 
 def _check_clearance(space: Space, clearance: float, simplify: bool) -> float:
-    """Return the clearance [m], or raise RequestError where the space cannot measure it."""
+    """
+    Return the clearance [m], or raise RequestError.
+
+    A clearance above 0 needs a space that measures the distance to its walls, and ``simplify``.
+    """
     clearance = check_number('clearance', clearance, 0.0, CLEARANCE_MAX)
     if clearance > 0.0 and space.walls is None:
         raise RequestError(
@@ -201,10 +230,11 @@ def _check_clearance(space: Space, clearance: float, simplify: bool) -> float:
 
 def outcome_without_search(request: Request) -> tuple[PlannerStatus, str] | None:
     """
-    Return the status of a request that needs no search, and the reason; None for one that does.
+    Return the status of a request that needs no search, and the reason; None where it needs one.
 
-    No search is needed when an end is not free, when no path joins the two components, or when
-    the start reaches the goal directly.
+    No search is needed when the start is not free, when the start reaches the goal directly, or
+    when the component of the start, a connected part of free space, holds neither the goal nor,
+    with a radius above 0, a point of the goal region.
     """
     space, start, goal = request.space, request.start, request.goal
     start_component, goal_component, reached = _components_of_ends(request.problem)
@@ -230,7 +260,11 @@ def outcome_without_search(request: Request) -> tuple[PlannerStatus, str] | None
 
 @kernel
 def _components_of_ends(problem):
-    """Return the components of start and goal (0: not free), and whether the goal is reached."""
+    """
+    Return the components of start and goal, and whether the start reaches the goal directly.
+
+    A component is the number of a connected part of free space; 0 for a point that is not free.
+    """
     start_component = component(problem.space, problem.start)
     goal_component = component(problem.space, problem.goal)
     reached = start_component != 0 and reaches_goal(problem, problem.start)
@@ -238,5 +272,5 @@ def _components_of_ends(problem):
 
 
 def in_words(point: Floats) -> str:
-    """Return a point (dim,) for a message."""
+    """Return the coordinates of a point (dim,) in round brackets, for a message."""
     return '(' + ', '.join(f'{x:g}' for x in point) + ')'

@@ -1,4 +1,4 @@
-"""Results of ``plan``, and what they share with those of ``plan_trajectory``."""
+"""Results of ``plan``, and the fields that they share with those of ``plan_trajectory``."""
 
 from dataclasses import dataclass
 from enum import Enum
@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 
 class PlannerStatus(Enum):
-    """How a request ended; the value is a description of it."""
+    """How a request ended; the value of a member describes that ending in words."""
 
     SOLVED = 'a path was found'
     INVALID_START = 'the start is not free'
@@ -29,7 +29,7 @@ class FirstSolution(NamedTuple):
     Attributes
     ----------
     elapsed : float
-        Time from the beginning of the call until it was found [s].
+        Time from the beginning of the call until the path was found [s].
     length : float
         Length of the path [m].
     path : (m, dim)
@@ -50,31 +50,34 @@ class SearchResult:
     Attributes
     ----------
     status : PlannerStatus
+        How the request ended.
     message : str
-        Why the request ended like this, with the values.
+        Why the request ended with this status, with the values that decided it.
     planner : str
         Name of the planner that searched.
     path : (m, dim)
-        Vertices from start to goal; (0, dim) when there is none.
+        Vertices from start to goal [m]; (0, dim) when no path was found.
     length : float
-        Length of the path [m]; inf when there is none.
+        Length of the path [m]; inf when no path was found.
     samples : (k, dim)
-        The start, then one row for each vertex of the search; a second tree has its root at the
-        goal.
+        Points that the search reached [m]: the start, then one row for each further vertex; a
+        second tree has its root at the goal.
     parents : (k,) int
-        Row of ``samples`` that each was reached from; -1 for the roots.
+        Row of ``samples`` from which each sample was reached; -1 for the root of a tree.
     iterations : int
-        Transitions handled: proposals inside the space, accepted or not, of all searches together.
+        Number of transitions handled by all searches together: proposals inside the space,
+        accepted or not.
     counts : dict
-        Further counts by name, of all searches together.
+        Further counts of the planner by name, of all searches together.
     elapsed : float
-        Time of the whole call [s], compilation aside.
+        Duration of the whole call [s], without the time spent waiting for compilation.
     seed : int
         The seed that reproduces this result.
     cut_by_time : bool
-        Whether a clock or a cancellation ended something: only then may the same seed give
-        another result.
+        Whether the clock or a cancellation ended some of the work: only then may the same seed
+        give another result.
     first_solution : FirstSolution or None
+        The first path as found; None when no path was found.
 
     """
 
@@ -93,7 +96,7 @@ class SearchResult:
     first_solution: FirstSolution | None
 
     def __repr__(self) -> str:
-        """Name status and length, and count vertices, samples and transitions."""
+        """Return the status, the length and the numbers of vertices, samples and transitions."""
         return (
             f'{type(self).__name__}({self.status.name}, length={self.length:.6g}, '
             f'vertices={len(self.path)}, samples={len(self.samples)}, '
@@ -104,18 +107,19 @@ class SearchResult:
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class PlanResult(SearchResult):
     """
-    Result of ``plan``: all that a ``SearchResult`` has, and the attributes below.
+    Result of ``plan``: the attributes of ``SearchResult``, and those below.
 
     Attributes
     ----------
     others : tuple of (k, dim)
-        Further paths, when alternatives were requested.
+        Further paths [m], when alternatives were requested; else empty.
     goal_offset : float
         Distance from the requested goal to the end of the path [m] where the goal was moved
         within ``goal_tolerance``; else 0.
     lower_bound : float
-        Length that no free path falls below [m]: that of the path itself, up to margins at
-        corners, where it is proved to be the shortest; inf where no path exists.
+        Lower bound on the length of all free paths from start to goal [m]. It equals the length
+        of the path, up to margins at corners, where that is proved to be the shortest; it is inf
+        where no path exists.
     escape : float
         Length of the first segment of the path [m] where it leads from a start that is not free
         to free space (``start_escape``); else 0.
@@ -129,5 +133,5 @@ class PlanResult(SearchResult):
 
     @property
     def paths(self) -> tuple[Floats, ...]:
-        """All paths, the shortest first: ``path`` and the others."""
+        """All paths, the shortest first: ``path`` and ``others``; empty when no path was found."""
         return (self.path, *self.others) if len(self.path) else ()

@@ -12,18 +12,24 @@ Result = TypeVar('Result', bound=SearchResult)
 
 
 def tier_since(before: int) -> str:
-    """Return 'compiled', or 'interpreted' where ``interpreted_calls()`` is not ``before`` now."""
+    """
+    Return 'compiled' if no kernel has run interpreted since ``before``, else 'interpreted'.
+
+    ``before`` is the value of ``interpreted_calls()`` when the work began.
+    """
     return 'compiled' if interpreted_calls() == before else 'interpreted'
 
 
 def remark_since(before: int) -> str:
     """
-    Return what a message adds about work that was cut: why it was slow, if it ran interpreted.
+    Return the remark for the message of work that a limit cut: why it ran interpreted.
+
+    The remark is empty if no kernel has run interpreted since ``before``.
 
     Parameters
     ----------
     before : int
-        What ``interpreted_calls()`` was when the work began.
+        Value of ``interpreted_calls()`` when the work began.
 
     """
     if tier_since(before) == 'compiled':
@@ -33,7 +39,11 @@ def remark_since(before: int) -> str:
 
 
 def with_remark(result: Result, before: int) -> Result:
-    """Return a result whose message names the tier where a limit cut interpreted work."""
+    """
+    Return ``result``, with a remark in its message if a limit cut it and it ran interpreted.
+
+    ``before`` is the value of ``interpreted_calls()`` when the work began.
+    """
     if not result.cut_by_time:
         return result
     return replace(result, message=result.message + remark_since(before))

@@ -53,7 +53,11 @@ EXPLORE = 2
 
 
 def check_alternatives(space: Space, alternatives: int, simplify: bool) -> int:
-    """Return the number of paths requested, or raise RequestError."""
+    """
+    Return the number of paths requested, or raise RequestError.
+
+    More than one path needs a space with ``island_points``, and ``simplify``.
+    """
     n_paths = check_count('alternatives', alternatives, 1)
     if n_paths > 1 and space.island_points is None:
         raise RequestError(
@@ -68,7 +72,12 @@ def check_alternatives(space: Space, alternatives: int, simplify: bool) -> int:
 def with_alternatives(
     request: Request, result: PlanResult, n_paths: int, budget: Budget, began: float
 ) -> PlanResult:
-    """Return a solved request's result with up to ``n_paths`` paths of different classes."""
+    """
+    Return the result of a solved request with up to ``n_paths`` paths of different classes.
+
+    ``result`` is the result of ``plan`` with one path. ``began`` is the time at which the call
+    began, on the clock of ``working_time`` [s].
+    """
     paths, more_work = _find(request, result.path, n_paths, budget)
     work = Work(result.iterations, result.counts).plus(more_work)
     lengths = ', '.join(f'{path_length(path):.6g}' for path in paths)
@@ -90,10 +99,11 @@ def _find(
     request: Request, path: Floats, n_paths: int, budget: Budget
 ) -> tuple[list[Floats], Work]:
     """
-    Find the shortest paths of up to ``n_paths`` classes with the ends of ``path`` (m, dim).
+    Find the shortest paths of up to ``n_paths`` homology classes with the ends of ``path`` (m, 2).
 
-    ``path`` itself is one of them, unless a shorter one is found in its class. A limit ends the
-    search early, with the paths found so far. Returns the paths, the shortest first, and the work.
+    ``path`` is in the caller's frame and takes part for its class, unless a shorter one is found
+    in that class. A limit of the budget ends the search early, with the paths found so far.
+    Returns the paths, caller's frame, the shortest first, and the work of all searches.
     """
     space = request.space
     if np.array_equal(path[0], path[-1]):
@@ -123,7 +133,13 @@ def _find(
 
 
 def _explore(request: Request, path: Floats, budget: Budget) -> tuple[ClassGraph, Work]:
-    """Return a graph of points of the start's component, and the work of the searches."""
+    """
+    Return a graph of points of the start's component, and the work of the searches made for it.
+
+    The points are those of ``path`` (m, 2), of searches from start to goal over uniform points,
+    and the uniform points themselves. The component is the connected part of free space that
+    holds the start.
+    """
     paths = [request.space.to_kernel(path)]
     ends = paths[0][0], paths[0][-1]
     draws = np.empty((N_POINTS, request.space.dim))
@@ -144,7 +160,12 @@ def _explore(request: Request, path: Floats, budget: Budget) -> tuple[ClassGraph
 
 
 def _linked(request: Request, paths: list[Floats], others: Floats, budget: Budget) -> ClassGraph:
-    """Return the graph of the vertices of paths and of other points, with edges to near points."""
+    """
+    Return the graph of the vertices of ``paths`` and of ``others`` (k, 2), kernel frame.
+
+    Its edges are the segments of the paths and, while the budget lasts, the free segments from
+    each point to its ``N_NEIGHBOURS`` nearest points.
+    """
     nodes, edges, n_nodes = [paths[0][[0, -1]]], [], 2
     for path in paths:
         inner = path[1:-1]
@@ -163,7 +184,11 @@ def _linked(request: Request, paths: list[Floats], others: Floats, budget: Budge
 
 @kernel
 def _draw_points(problem, rng, points):
-    """Fill ``points`` (k, dim) with uniform points of the start's component; return how many."""
+    """
+    Write uniform points of the start's component to ``points`` (k, dim); return their number.
+
+    They are fewer than k where ``DRAWS_FOR_A_POINT`` draws for each point do not yield enough.
+    """
     component_of_start, n_points = component(problem.space, problem.start), 0
     for _ in range(DRAWS_FOR_A_POINT * len(points)):
         if n_points == len(points):

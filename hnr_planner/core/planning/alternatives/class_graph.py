@@ -27,16 +27,16 @@ START, GOAL = 0, 1
 
 class ClassGraph(NamedTuple):
     """
-    Points, and the pairs of them with a free segment between.
+    A graph of points, with an edge between two points where their segment is free.
 
     Attributes
     ----------
     points : (n, 2)
-        The nodes, start and goal first.
+        The nodes, kernel frame, start and goal first.
     first : (n + 1,) int64
-        Index where each node's neighbours begin.
+        Index in ``neighbours`` where each node's neighbours begin; the last entry is their number.
     neighbours : (edges,) int64
-        The neighbours of all nodes, node by node.
+        Indices in ``points`` of the neighbours of all nodes, node by node.
 
     """
 
@@ -46,7 +46,7 @@ class ClassGraph(NamedTuple):
 
 
 def class_graph(points: Floats, edges: NDArray[np.int64]) -> ClassGraph:
-    """Return the graph with these ``edges`` (k, 2), each in both directions."""
+    """Return the graph with ``edges`` (k, 2) of indices in ``points``, each in both directions."""
     n = len(points)
     a, b = edges.T
     both = np.unique(np.concatenate([a * n + b, b * n + a]))
@@ -55,14 +55,23 @@ def class_graph(points: Floats, edges: NDArray[np.int64]) -> ClassGraph:
 
 
 def shortest_classes(graph: ClassGraph, islands: Islands, n_classes: int) -> list[Floats]:
-    """Return the shortest path (m, 2) of each of the ``n_classes`` shortest classes, or fewer."""
+    """
+    Return the shortest path (m, 2) of each of the ``n_classes`` shortest homology classes.
+
+    The paths run from start to goal of the graph without crossing themselves, the shortest first.
+    There are fewer where the search finds no more classes.
+    """
     ends, nodes, parents = _search(graph, islands, n_classes)
     return [branch(graph.points[nodes], parents, end) for end in ends]
 
 
 @kernel
 def near_edges(space, points, rows, n_near):
-    """Return the free edges (k, 2) from the points in ``rows`` to their nearest neighbours."""
+    """
+    Return the free edges (k, 2) from the points in ``rows`` to their ``n_near`` nearest points.
+
+    Edges and ``rows`` are indices in ``points`` (n, 2). An edge is free if its segment is.
+    """
     edges, n_edges = np.empty((len(rows) * n_near, 2), dtype=np.int64), 0
     nearest, squared = np.empty(n_near, dtype=np.int64), np.empty(n_near)
     for i in rows:
@@ -83,7 +92,11 @@ def near_edges(space, points, rows, n_near):
 
 @kernel
 def _insert(nearest, squared, j, distance_squared):
-    """Insert ``j`` into the list of nearest points, which is ordered by distance."""
+    """
+    Insert ``j`` into the list of nearest points, ordered by distance, if it is near enough.
+
+    ``squared`` holds the squared distances of the points in ``nearest``.
+    """
     k = len(nearest)
     while k > 0 and distance_squared < squared[k - 1]:
         k -= 1
@@ -95,7 +108,12 @@ def _insert(nearest, squared, j, distance_squared):
 
 @kernel
 def _search(graph, islands, n_classes):
-    """Search from start to goal; return labels at the goal, node and parent of all labels."""
+    """
+    Search from start to goal; return (labels at the goal, node of each label, parent label).
+
+    A label is a path from the start to a node, of its own signature. The labels at the goal are
+    those of the at most ``n_classes`` shortest classes, in the order of their lengths.
+    """
     points, rows = graph.points, 1 + n_classes * len(graph.neighbours)
     nodes, parents = np.empty(rows, dtype=np.int64), np.empty(rows, dtype=np.int64)
     lengths, signatures = np.empty(rows), np.empty(rows, dtype=np.int64)
@@ -129,7 +147,7 @@ def _search(graph, islands, n_classes):
 
 @kernel
 def _is_new(known, n_known, node, signature):
-    """Return whether a node lacks this signature, and has fewer than the largest number."""
+    """Return whether a node lacks ``signature`` and may get one more in its row of ``known``."""
     for k in range(n_known[node]):
         if known[node, k] == signature:
             return False
@@ -153,7 +171,7 @@ def _crosses_itself(points, nodes, parents, label, near):
 
 @kernel
 def is_simple(path):
-    """Return whether no two segments of a path (m, 2) cross."""
+    """Return whether no two segments of a path (m, 2) cross in a point inside both."""
     for j in range(1, len(path)):
         for i in range(1, j - 1):
             if _cross(path[i - 1], path[i], path[j - 1], path[j]):

@@ -33,16 +33,17 @@ from hnr_planner.core.planning.planners.cones import (
 )
 from hnr_planner.core.spaces.grid.slabs import LEFT, RIGHT
 
-#: Ratio of two distances below which the first counts as the shorter.
+#: Ratio of the length of a path to that of another below which the former counts as shorter.
 NEARER = 1.0 - 1e-13
 
 
 @kernel
 def expand(slabs, frontier, goal, goal_slab, n_iterations):
     """
-    Expand at most ``n_iterations`` nodes, and return how many.
+    Expand at most ``n_iterations`` nodes in the order of their estimates; return how many.
 
-    It ends early when the goal is reached, no node is open, or there are no rows left.
+    It ends early when the shortest path to ``goal`` (2,) is found, no node is open, or the arrays
+    of ``frontier`` may have too few rows for the next node.
     """
     slabs, frontier, goal = borrowed(slabs), borrowed(frontier), borrowed(goal)
     sizes, nodes, vertices = frontier.sizes, frontier.nodes, frontier.vertices
@@ -74,7 +75,7 @@ def expand(slabs, frontier, goal, goal_slab, n_iterations):
 
 @kernel
 def _expand_ahead(slabs, frontier, goal, row, first, last):
-    """Add nodes for the portals ``first`` to ``last`` - 1 visible from the root of ``row``."""
+    """Add nodes for the portals ``first`` to ``last`` - 1 that lie in the cone of node ``row``."""
     nodes, vertices = frontier.nodes, frontier.vertices
     up, root = int(nodes[row, UP]), int(nodes[row, ROOT])
     x, y = vertices[root, X], vertices[root, Y]
@@ -100,7 +101,12 @@ def _expand_ahead(slabs, frontier, goal, row, first, last):
 
 @kernel
 def _expand_around(slabs, frontier, goal, row, side, slab, holds_goal):
-    """Add the nodes, or the goal, beyond a bend at the corner on one side of node ``row``."""
+    """
+    Add the nodes, or the goal, beyond a bend at the corner on one side of node ``row``.
+
+    Nothing is added where the bound of the cone on that side is no corner of an obstacle, or a
+    shorter path to the corner is known. ``holds_goal`` states whether ``slab`` holds the goal.
+    """
     nodes, vertices = frontier.nodes, frontier.vertices
     up, root, portal = int(nodes[row, UP]), int(nodes[row, ROOT]), int(nodes[row, PORTAL])
     x, y = vertices[root, X], vertices[root, Y]
@@ -144,7 +150,7 @@ def _expand_around(slabs, frontier, goal, row, side, slab, holds_goal):
 
 @kernel
 def _reach_goal(slabs, frontier, goal, row):
-    """Push the goal on the heap where it is visible from the root of node ``row``."""
+    """Push the goal on the heap where it lies in the cone of node ``row``."""
     nodes, vertices = frontier.nodes, frontier.vertices
     up, root = int(nodes[row, UP]), int(nodes[row, ROOT])
     x, y = vertices[root, X], vertices[root, Y]
@@ -157,7 +163,11 @@ def _reach_goal(slabs, frontier, goal, row):
 
 @kernel
 def _reach_corner(frontier, root, x, y, corner):
-    """Add the vertex at a corner reached from ``root``; NONE where a shorter path was found."""
+    """
+    Add the vertex at corner ``corner``, at (x, y), reached from row ``root``; return its row.
+
+    Returns NONE (-1) and adds nothing where a path to the corner that is no longer is known.
+    """
     vertices = frontier.vertices
     distance = vertices[root, DISTANCE] + math.hypot(x - vertices[root, X], y - vertices[root, Y])
     if distance >= NEARER * frontier.nearest[corner]:

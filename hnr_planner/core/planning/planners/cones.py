@@ -4,7 +4,7 @@ Cones: the search nodes of Polyanya on slabs, and the heap of those that are ope
 A node is a root, the last corner at which the path bends, and the interval of a portal that is
 visible from the root: the cone between two bounds, through that portal into the next slab. Corners
 and the ends of portals have integer coordinates, and a cone is stored as the points that bound it,
-so whether a corner lies in a cone is the sign of an exact product.
+so the sign of an exact product states whether a corner lies in a cone.
 
 Cones are closed, so that a path may touch corners on both sides. Left and right are those of the
 grid, also for cones that open downwards.
@@ -19,35 +19,39 @@ from hnr_planner.core.spaces.grid.slabs import slab_at, THROUGH
 import numpy as np
 from numpy.typing import NDArray
 
-#: No vertex, no portal.
+#: Index that stands for no vertex or no corner.
 NONE = -1
-#: Columns of a node: row of its root, bounds of its cone, portal, direction of travel (+1 up).
+#: Columns of a node: row of its root vertex, points on the left and right bound of its cone, index
+#: of its portal, direction in which the cone opens (+1 up, -1 down).
 ROOT, LEFT_X, LEFT_Y, RIGHT_X, RIGHT_Y, PORTAL, UP = range(7)
-#: Columns of a vertex: point, distance from the start, row of the vertex before, corner.
+#: Columns of a vertex: point, length of the path from the start, row of the vertex before on that
+#: path, number of its corner (2 portal + side).
 X, Y, DISTANCE, PARENT, CORNER = range(5)
-#: Entries of ``sizes``.
+#: Entries of ``Frontier.sizes``: nodes, vertices and open nodes, and the row of the last vertex.
 N_NODES, N_VERTICES, N_OPEN, FINAL = range(4)
 
 
 class Frontier(NamedTuple):
     """
-    State of a search.
+    State of a search; points and lengths are in the kernel frame, in units of cells.
 
     Attributes
     ----------
     nodes : (rows, 7)
-        Columns as above.
+        Search nodes; columns ``ROOT`` to ``UP``.
     vertices : (rows, 5)
-        Columns as above; row 0 is the start.
+        The start, row 0, and the corners reached; columns ``X`` to ``CORNER``.
     estimates, heap : (rows,)
-        Binary heap of open nodes: their estimates, and their rows (``NONE - row`` of a vertex for
-        the goal reached from there).
+        Binary heap of open nodes: lower bounds on the length of paths through each node, and the
+        row of each node in ``nodes``; ``NONE - row`` stands for the goal reached from the vertex
+        in that row.
     nearest : (2 n_portals,)
-        Least distance at which each corner has been reached.
+        Length of the shortest path by which each corner has been reached; inf at first.
     is_open : (n_slabs,) bool
         Slabs that a path may pass: all but dead ends that hold neither start nor goal.
     sizes : (4,) int64
-        Rows in use, and the vertex from which the goal was reached.
+        Numbers of nodes, of vertices and of open nodes, and the row of the vertex from which the
+        goal was reached, NONE (-1) while the search is not solved.
 
     """
 
@@ -62,7 +66,12 @@ class Frontier(NamedTuple):
 
 @kernel
 def open_frontier(slabs, start, goal, capacity):
-    """Return the state of a search between free points (2,) off grid lines."""
+    """
+    Return the state of a new search from ``start`` to ``goal``, with its first nodes.
+
+    Both are free points (2,), kernel frame, that lie on no line between rows. The arrays have
+    ``capacity`` rows.
+    """
     frontier = Frontier(
         np.empty((capacity, 7)),
         np.empty((capacity, 5)),
@@ -90,7 +99,7 @@ def open_frontier(slabs, start, goal, capacity):
 
 @kernel
 def first_capacity(slabs, start):
-    """Return how many rows the first nodes of a search from a point (2,) need."""
+    """Return how many rows the arrays of a search from ``start`` (2,) need for its first nodes."""
     slab = slab_at(slabs, start[0], start[1])
     above = slabs.above[slab, 1] - slabs.above[slab, 0]
     return above + slabs.below[slab, 1] - slabs.below[slab, 0] + 2
@@ -98,7 +107,7 @@ def first_capacity(slabs, start):
 
 @kernel
 def _open_exits(slabs, frontier, slab):
-    """Mark as open the slabs from ``slab`` to the exit of its dead end."""
+    """Mark as open the slabs on the way from ``slab`` out of the dead end that holds it."""
     while not frontier.is_open[slab]:
         frontier.is_open[slab] = True
         slab = slabs.exits[slab]
@@ -106,7 +115,11 @@ def _open_exits(slabs, frontier, slab):
 
 @kernel
 def is_over(frontier):
-    """Return whether the search has ended; store the goal's vertex once it comes first."""
+    """
+    Return whether the search has ended: the goal is first in the heap, or the heap is empty.
+
+    Where the goal comes first, the vertex from which it was reached is stored in ``sizes``.
+    """
     sizes = frontier.sizes
     if sizes[N_OPEN] > 0 and frontier.heap[0] <= NONE:
         sizes[FINAL] = NONE - frontier.heap[0]
@@ -126,7 +139,12 @@ def add_vertex(frontier, x, y, distance, parent, corner):
 
 @kernel
 def add_node(slabs, frontier, goal, root, lx, ly, rx, ry, portal, up):
-    """Add the node of a root and the cone between two bounds (x, y) through a portal."""
+    """
+    Add the node of a root vertex and a cone through a portal, and push it on the heap.
+
+    The cone lies between the bounds through (lx, ly) and (rx, ry) and opens up (``up`` = 1) or
+    down (-1). Nothing is added where the slab beyond the portal is not open.
+    """
     if not frontier.is_open[slabs.portals[portal, 4] if up == 1 else slabs.portals[portal, 3]]:
         return
     row = frontier.sizes[N_NODES]
@@ -147,7 +165,7 @@ def add_node(slabs, frontier, goal, root, lx, ly, rx, ry, portal, up):
 
 @kernel
 def _crossing(x, y, bx, by, line):
-    """Return the x at which the ray from ``(x, y)`` through a bound meets a horizontal line."""
+    """Return the x at which the ray from (x, y) through (bx, by) meets the height ``line``."""
     return float(bx) if by == line else x + (bx - x) * (line - y) / (by - y)
 
 
@@ -165,7 +183,7 @@ def push(frontier, estimate, row):
 
 @kernel
 def pop(frontier):
-    """Remove the row of the least estimate from the heap."""
+    """Remove the entry of the least estimate from the heap of open nodes."""
     estimates, heap, sizes = frontier.estimates, frontier.heap, frontier.sizes
     sizes[N_OPEN] -= 1
     n = sizes[N_OPEN]

@@ -2,9 +2,9 @@
 Frontier of a tree: the newest vertex in the bin that was chosen least often.
 
 The plane of the first two coordinates is divided into square bins. Each tree keeps lists of the
-bins that hold a vertex of it, one list for each number of times that they were chosen. The least
-used bins are chosen first, and of these the newest. So a tree first explores from its newest
-vertices, and returns later to the regions that it left.
+bins that hold one of its vertices, one list for each number of times that bins were chosen. A bin
+chosen least often comes next, and of several the one that was put in its list last. So a tree
+first explores from its newest vertices, and returns later to the regions that it left.
 """
 
 import math
@@ -29,21 +29,25 @@ ANY = 0.07
 
 class Frontier(NamedTuple):
     """
-    Bins of two trees, index ``tree`` first.
+    Bins of two trees; the first index of each array is the number of the tree.
+
+    A bin counts as empty for a tree that has no vertex in it.
 
     Attributes
     ----------
     bins : Bins
+        Sides and numbers of the bins, common to both trees.
     newest : (2, bins) int32
-        Newest vertex in a bin, NONE in an empty one.
+        Row of the tree's newest vertex in each bin; NONE (-1) for an empty bin.
     first : (2, USES_MAX + 1) int32
-        Head of the list of bins that were chosen so many times; NONE for an empty list.
+        Number of the first bin in the list of bins that were chosen k times, for each k; NONE for
+        an empty list.
     following : (2, bins) int32
-        Next bin of the same list.
+        Number of the bin after each bin in its list; NONE after the last one.
     filled : (2, bins) int32
-        Bins that are not empty, in the order in which they were filled.
+        Numbers of the bins that are not empty, in the order in which they got their first vertex.
     n_filled : (2,) int64
-        Number of those.
+        Number of bins of each tree that are not empty: entries of ``filled`` in use.
 
     """
 
@@ -74,7 +78,7 @@ def empty_frontier(lower, upper, clearance):
 
 @kernel
 def add_to_bin(frontier, tree, x, k):
-    """Make vertex ``k`` at ``x`` the newest of its bin; return the bin."""
+    """Make vertex ``k`` at ``x`` (dim,) the newest of its bin; return the number of the bin."""
     at = bin_of(frontier.bins, x)
     if frontier.newest[tree, at] == NONE:
         _put_first(frontier, tree, at, 0)
@@ -86,7 +90,12 @@ def add_to_bin(frontier, tree, x, k):
 
 @kernel
 def choose_vertex(frontier, tree, rng):
-    """Choose the vertex of a tree to grow from; return its row."""
+    """
+    Choose the vertex from which a tree grows next; return its row.
+
+    It is the newest vertex of a bin: of a uniform one with probability ``ANY``, else of the bin
+    chosen least often. The latter choice is counted.
+    """
     if uniform(rng) < ANY:
         at = frontier.filled[tree, math.floor(frontier.n_filled[tree] * uniform(rng))]
         return frontier.newest[tree, at]
@@ -101,6 +110,6 @@ def choose_vertex(frontier, tree, rng):
 
 @kernel
 def _put_first(frontier, tree, at, uses):
-    """Insert a bin at the head of the list of those that were chosen ``uses`` times."""
+    """Insert bin ``at`` at the head of the list of bins that were chosen ``uses`` times."""
     frontier.following[tree, at] = frontier.first[tree, uses]
     frontier.first[tree, uses] = at

@@ -1,8 +1,9 @@
 """
 Hit-and-Run as a planner (paper, Section 1).
 
-From the start it takes one Hit-and-Run step after another, until a sample reaches the goal. Each
-step lies on a chord and so is free of collision: the chain itself is the path, without a tree.
+From the start the planner takes one Hit-and-Run step after another, until the goal is visible from
+a sample or, with a goal radius, a sample lies in the goal region. Each step
+lies on a chord and so is free of collision: the chain itself is the path, without a tree.
 """
 
 from dataclasses import dataclass, field
@@ -20,18 +21,18 @@ from numpy.typing import NDArray
 
 @dataclass(frozen=True)
 class HitAndRun:
-    """The paper's Hit-and-Run planner. It has no settings."""
+    """The paper's planner Hit-and-Run: one chain from the start. It has no settings."""
 
     name: ClassVar[str] = 'hit_and_run'
 
     def start(self, problem: Problem, rng: Stream) -> 'HitAndRunSearch':
-        """Start a chain at the problem's start."""
+        """Return a search whose chain begins at the problem's start."""
         return HitAndRunSearch(problem, rng)
 
 
 @dataclass
 class HitAndRunSearch:
-    """Search by one chain; a transition is one step."""
+    """Search by one chain of Hit-and-Run steps; a transition is one step."""
 
     problem: Problem
     rng: Stream
@@ -46,31 +47,31 @@ class HitAndRunSearch:
 
     @property
     def iterations(self) -> int:
-        """Steps taken."""
+        """Number of steps taken."""
         return self._length - 1
 
     @property
     def samples(self) -> Floats:
-        """The chain (k, dim)."""
+        """Points (k, dim) of the chain, kernel frame, the start first."""
         return self._chain[: self._length]
 
     @property
     def parents(self) -> NDArray[np.int64]:
-        """Index (k,) of the sample before each; -1 for the start."""
+        """Index (k,) of the sample before each sample; -1 for the start."""
         return np.arange(-1, self._length - 1)
 
     @property
     def path(self) -> Floats:
-        """Path (m, dim): the whole chain, and an exact goal."""
+        """Path (m, dim) of a solved search: the whole chain, then the goal if that is exact."""
         return to_goal(self.problem, self.samples)
 
     @property
     def counts(self) -> dict[str, int]:
-        """Number of draws that rounded onto the boundary and were drawn again."""
+        """Further counts by name: ``redraws``, draws repeated since they fell on the boundary."""
         return {'redraws': self.redraws}
 
     def advance(self, n_iterations: int) -> None:
-        """Take at most ``n_iterations`` further steps."""
+        """Take ``n_iterations`` further steps, or fewer where the search is solved before."""
         if self.solved:
             return
         end = self._length + n_iterations
@@ -83,7 +84,11 @@ class HitAndRunSearch:
 
 @kernel
 def _walk(problem, rng, chain, length, end):
-    """Walk from the last of ``length`` samples until the goal is reached or there are ``end``."""
+    """
+    Extend the ``length`` samples of ``chain`` until the goal is reached or there are ``end``.
+
+    Returns (number of samples, whether the goal is reached, redraws).
+    """
     problem, rng, chain = borrowed(problem), borrowed(rng), borrowed(chain)
     redraws = 0
     for k in range(length, end):

@@ -51,13 +51,13 @@ class FrontierTrees(NamedTuple):
     Attributes
     ----------
     table : TreePair
-        Their vertices.
+        Vertices of both trees, kernel frame.
     members : (rows, 2) int64
-        Rows of the vertices of each tree.
+        Rows in ``table`` of the vertices of each tree, one column for each tree.
     frontier : Frontier
         Bins from which the next vertex to grow each tree is chosen.
     directions : (2, dim)
-        Work array of a step: the direction drawn, and the best one.
+        Work array of a step: the direction drawn last, and the direction of the longest free ray.
 
     """
 
@@ -69,18 +69,18 @@ class FrontierTrees(NamedTuple):
 
 @dataclass(frozen=True)
 class HitAndRunConnect:
-    """Trees of Hit-and-Run steps from both ends. It has no settings."""
+    """The planner that grows trees of Hit-and-Run steps from both ends. It has no settings."""
 
     name: ClassVar[str] = 'hit_and_run_connect'
 
     def start(self, problem: Problem, rng: Stream) -> 'HitAndRunConnectSearch':
-        """Start a tree at each end."""
+        """Return a search whose trees begin at the problem's start and at its goal."""
         return HitAndRunConnectSearch(problem, rng)
 
 
 @dataclass
 class HitAndRunConnectSearch(TwoTreeSearch):
-    """Search with two trees, which grow alternately; a transition is one step."""
+    """Search with two trees, which grow alternately; a transition is one step of one tree."""
 
     _redraws: int = field(init=False, default=0)
     #: None until the first steps, whose kernel call also makes the trees: one call less.
@@ -92,11 +92,11 @@ class HitAndRunConnectSearch(TwoTreeSearch):
 
     @property
     def counts(self) -> dict[str, int]:
-        """Number of draws that rounded onto the boundary and were drawn again."""
+        """Further counts by name: ``redraws``, draws repeated since they fell on the boundary."""
         return {'redraws': self._redraws}
 
     def advance(self, n_iterations: int) -> None:
-        """Take at most ``n_iterations`` further steps."""
+        """Take ``n_iterations`` further steps, or fewer where the search is solved before."""
         if self.solved:
             return
         if self._trees is None:
@@ -111,7 +111,7 @@ class HitAndRunConnectSearch(TwoTreeSearch):
 
 
 def _with_rows(trees: FrontierTrees, rows: int) -> FrontierTrees:
-    """Return the trees with a capacity of ``rows`` at least."""
+    """Return the trees with a common capacity of at least ``rows`` vertices."""
     table = with_rows(trees.table, rows)
     return trees._replace(table=table, members=with_capacity(trees.members, len(table.parents)))
 
@@ -125,7 +125,12 @@ def _begin(problem, rng, n_iterations):
 
 @kernel
 def _plant(problem, rows):
-    """Return trees with roots at the start and, where it is in the same component, the goal."""
+    """
+    Return trees with a capacity of ``rows``, with a root at the start and, if possible, the goal.
+
+    The tree of the goal stays empty where the goal lies in another component, another connected
+    part of free space, than the start.
+    """
     trees = FrontierTrees(
         empty_trees(rows, len(problem.start)),
         np.empty((rows, 2), dtype=np.int64),
@@ -142,7 +147,13 @@ def _plant(problem, rows):
 
 @kernel
 def _grow(problem, trees, rng, turn, n_iterations):
-    """Grow the trees alternately; return the rows that connect them or NONE, steps, redraws."""
+    """
+    Grow the trees alternately by at most ``n_iterations`` steps; return (ends, steps, redraws).
+
+    ``ends`` are the rows of the two vertices that connect the trees, the start's tree first,
+    (row, NONE) for a vertex in the goal region, or (NONE, NONE) while the search is not solved.
+    ``turn`` is the number of steps taken before.
+    """
     problem, trees, rng = borrowed(problem), borrowed(trees), borrowed(rng)
     vertices = trees.table.vertices
     n_trees = 2 if trees.table.sizes[1] > 0 else 1
@@ -164,7 +175,11 @@ def _grow(problem, trees, rng, turn, n_iterations):
 
 @kernel
 def _step(space, x, rng, directions, y):
-    """Step from ``x`` along the longest of a few uniform rays; write the end ``y`` (dim,)."""
+    """
+    Step from ``x`` (dim,) along the longest of ``N_RAYS`` uniform rays; write the end ``y``.
+
+    The end is uniform on the ray beyond the fraction ``INNER``. Returns the number of redraws.
+    """
     u, best, longest = directions[0], directions[1], 0.0
     for _ in range(N_RAYS):
         draw_direction(rng, u)
@@ -177,7 +192,7 @@ def _step(space, x, rng, directions, y):
 
 @kernel
 def _add(trees, tree, parent):
-    """Add the vertex in the first free row to a tree; return its bin."""
+    """Add the vertex in the first free row to a tree, below row ``parent``; return its bin."""
     trees.members[trees.table.sizes[tree], tree] = first_free_row(trees.table)
     row = add_vertex(trees.table, tree, parent)
     return add_to_bin(trees.frontier, tree, trees.table.vertices[row], row)
@@ -185,7 +200,12 @@ def _add(trees, tree, parent):
 
 @kernel
 def _meet(space, trees, row, bin_number, other, rng):
-    """Return a visible vertex of the other tree, nearby or drawn uniformly; NONE if hidden."""
+    """
+    Return the row of a vertex of tree ``other`` visible from vertex ``row``; NONE if not found.
+
+    Tested are the newest vertices in the bin of number ``bin_number`` and in the 8 bins around it,
+    and then one vertex drawn uniformly.
+    """
     vertices, size = trees.table.vertices, trees.table.sizes[other]
     if size == 0:
         return NONE

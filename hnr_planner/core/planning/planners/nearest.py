@@ -16,7 +16,7 @@ from hnr_planner.core.trees import NONE
 import numpy as np
 from numpy.typing import NDArray
 
-#: Points in a leaf, above which it is halved.
+#: Largest number of points in a leaf; a leaf with more is halved, unless it is as deep as allowed.
 LEAF_SIZE = 8
 #: Depth of the deepest leaves, which are not halved however many points they hold.
 DEPTH_MAX = 100
@@ -29,19 +29,19 @@ class BoxTree(NamedTuple):
     Attributes
     ----------
     lower, upper : (dim,)
-        The box of the roots, the first nodes.
+        Opposite corners of the box of every root. The roots are the first nodes.
     child : (nodes, 2) int32
-        Nodes of the lower and the upper half; NONE in a leaf.
+        Indices of the nodes of the lower and the upper half of each node; NONE (-1) in a leaf.
     split : (nodes,)
-        Coordinate at which the node is halved.
+        Coordinate at which each node is halved, along axis depth modulo dim.
     first : (nodes,) int32
-        First point of a leaf's list; NONE when it is empty.
+        Index of the first point in each leaf's list; NONE for an empty list.
     following : (points,) int32
-        Next point of the list.
+        Index of the point after each point in its leaf's list; NONE after the last one.
     size : (nodes,) int32
-        Points in a leaf.
+        Number of points in each leaf.
     n_nodes : (1,) int64
-        Nodes in use.
+        Number of nodes in use.
     waiting : (DEPTH_MAX + 2, 3)
         Work array of a query, its stack of halves still to visit: node, depth, and squared
         distance to the plane in front of it. So a tree can serve one query at a time only.
@@ -76,7 +76,7 @@ def empty_box_tree(lower: Floats, upper: Floats, capacity: int, n_roots: int = 1
 
 
 def grown(tree: BoxTree, capacity: int) -> BoxTree:
-    """Return the same trees with a common capacity of ``capacity`` points."""
+    """Return a copy of the trees with a larger common capacity of ``capacity`` points."""
     n_roots = len(tree.child) - 2 * len(tree.following)
     larger = empty_box_tree(tree.lower, tree.upper, capacity, n_roots)
     for name in ('child', 'split', 'first', 'following', 'size', 'n_nodes'):
@@ -87,7 +87,7 @@ def grown(tree: BoxTree, capacity: int) -> BoxTree:
 
 @kernel
 def insert(tree, points, k, root=0):
-    """Add point ``k`` of ``points`` (n, dim) to the tree of ``root``."""
+    """Add point ``k`` of ``points`` (n, dim) to the tree whose root is node ``root``."""
     dim = points.shape[1]
     lower, upper = tree.lower.copy(), tree.upper.copy()
     node, depth = root, 0
@@ -116,7 +116,7 @@ def _push(tree, leaf, k):
 
 @kernel
 def _halve(tree, points, leaf, axis, middle):
-    """Turn ``leaf`` into an inner node, and move its points to its two halves."""
+    """Turn ``leaf`` into an inner node halved at coordinate ``middle``; move its points down."""
     new = tree.n_nodes[0]
     tree.n_nodes[0] += 2
     k = tree.first[leaf]
@@ -130,7 +130,11 @@ def _halve(tree, points, leaf, axis, middle):
 
 @kernel
 def nearest(tree, points, x, root=0):
-    """Return the index of a root's point nearest to ``x`` (dim,), the lowest if several."""
+    """
+    Return the index in ``points`` (n, dim) of the point nearest to ``x`` (dim,) in a root's tree.
+
+    Of several at the same distance it is the lowest index; it is NONE (-1) in an empty tree.
+    """
     dim = points.shape[1]
     waiting = tree.waiting
     waiting[0, 0], waiting[0, 1], waiting[0, 2] = root, 0.0, 0.0

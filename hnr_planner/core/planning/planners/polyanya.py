@@ -3,8 +3,8 @@ Polyanya: the shortest path on a grid, exactly.
 
 A search node is a cone of points visible from the start or from a corner. Cones are expanded as in
 A*, in the order of a lower bound on the length of paths through them, as if there were no further
-obstacles. So the first path to the goal that comes up is the shortest of all, and the least
-estimate of an open cone is a lower bound on its length at any time.
+obstacles. So the first path to the goal that is taken from the open ones is the shortest of all,
+and the least estimate of an open cone is a lower bound on the length of that path at any time.
 Source: Cui, Harabor and Grastien, "Compromise-free pathfinding on a navigation mesh", IJCAI 2017,
 here on the slabs of a grid.
 
@@ -45,16 +45,16 @@ from hnr_planner.core.trees import rows_to
 import numpy as np
 from numpy.typing import NDArray
 
-#: Nodes that fit in the arrays at first.
+#: Number of search nodes that fit in the arrays at first.
 INITIAL_CAPACITY = 4096
-#: Largest number of corners that the segments of a path may graze, for each vertex.
+#: Rows of the array of the result for each vertex of a path that is moved off corners.
 GRAZED_MAX = 64
 
 
 @dataclass(frozen=True)
 class Polyanya:
     """
-    The exact shortest path on a grid. It is deterministic: the seed has no effect.
+    The planner of the exact shortest path on a grid. It draws nothing: the seed has no effect.
 
     Attributes
     ----------
@@ -67,13 +67,17 @@ class Polyanya:
     name: ClassVar[str] = 'polyanya'
 
     def for_space(self, space: Space) -> 'Polyanya':
-        """Return the planner for a space, or raise RequestError where that has no slabs."""
+        """Return the planner for ``space``, or raise RequestError where that is no GridSpace."""
         if not isinstance(space, GridSpace):
             raise RequestError(f'polyanya plans in a GridSpace, got a {type(space).__name__}')
         return replace(self, space=space)
 
     def start(self, problem: Problem, rng: Stream) -> 'PolyanyaSearch':
-        """Start at the problem's start; RequestError for a planner without a space."""
+        """
+        Return a search that begins at the problem's start; ``rng`` is not used.
+
+        Raises RequestError where the planner has no space yet (``for_space``).
+        """
         if self.space is None:
             raise RequestError('Polyanya has no space yet: plan puts in that of its request')
         return PolyanyaSearch(problem, self.space)
@@ -82,11 +86,11 @@ class Polyanya:
 @dataclass
 class PolyanyaSearch:
     """
-    A running search; a transition is the expansion of one cone.
+    A running search of Polyanya; a transition is the expansion of one cone.
 
-    ``samples`` are the start and the corners at which shortest paths from it bend. The slabs and
-    the first cones are made by the first ``advance``: on a large grid that takes seconds while it
-    runs interpreted, and only there can a limit interrupt it.
+    ``samples`` are the start and the corners at which shortest paths from the start bend. The
+    slabs and the first cones are made by the first ``advance``: on a large grid, interpreted, that
+    takes seconds, and only in ``advance`` can a limit interrupt the work.
     """
 
     problem: Problem
@@ -109,7 +113,11 @@ class PolyanyaSearch:
 
     @property
     def lower_bound(self) -> float:
-        """Lower bound on the length of paths, kernel frame; the least length when solved."""
+        """
+        Lower bound on the length of free paths from start to goal, kernel frame.
+
+        It is the least length itself once the search is solved, and inf where no path exists.
+        """
         if not self._is_open:
             return math.dist(self._start, self._goal)
         if self._frontier.sizes[N_OPEN] == 0:
@@ -118,23 +126,28 @@ class PolyanyaSearch:
 
     @property
     def samples(self) -> Floats:
-        """Start and corners reached (k, 2)."""
+        """Start and corners reached (k, 2), kernel frame; corners again for shorter paths."""
         return self._frontier.vertices[: self._frontier.sizes[N_VERTICES], :DISTANCE]
 
     @property
     def parents(self) -> NDArray[np.int64]:
-        """Index (k,) of the corner before each on the shortest path found; -1 for the start."""
+        """
+        Index (k,) in ``samples`` of the point before each sample, -1 for the start.
+
+        The point before a sample is the last bend of the shortest path found from the start to
+        that sample.
+        """
         rows = self._frontier.vertices[: self._frontier.sizes[N_VERTICES], PARENT]
         return rows.astype(np.int64)
 
     @property
     def counts(self) -> dict[str, int]:
-        """Number of cones opened."""
+        """Further counts by name: ``cones``, the number of search nodes made."""
         return {'cones': int(self._frontier.sizes[N_NODES])}
 
     @property
     def path(self) -> Floats:
-        """Path (m, 2) of a solved search, at the margin from the corners that it passes."""
+        """Path (m, 2) of a solved search, kernel frame, at the margin from the corners passed."""
         frontier, problem = self._frontier, self.problem
         rows = rows_to(self.parents, int(frontier.sizes[FINAL]))
         corners = frontier.vertices[rows[1:], CORNER].astype(np.int64)
@@ -144,7 +157,7 @@ class PolyanyaSearch:
         return step_aside(problem.space, points, problem.margin)
 
     def advance(self, n_iterations: int) -> None:
-        """Expand at most ``n_iterations`` cones, fewer once solved or when all are expanded."""
+        """Expand at most ``n_iterations`` cones, fewer once solved or when no cone is left."""
         slabs = self.space.slabs
         if not self._is_open:
             capacity = max(INITIAL_CAPACITY, first_capacity(slabs, self._start))
@@ -190,8 +203,9 @@ def step_aside(space, points, margin):
     """
     Return a free path (k, 2) along ``points`` (m, 2) that passes every corner at the margin.
 
-    A segment is blocked only where it grazes a corner, possibly because its ends were moved off
-    their corners: then the path gets a vertex there as well.
+    A segment between two points is blocked only where it grazes a corner, possibly because its
+    ends were moved off their corners. Then the path gets another vertex at the margin from the
+    corner that is grazed.
     """
     aside = np.empty((GRAZED_MAX * len(points), 2))
     copy_into(aside[0], points[0])
@@ -222,7 +236,11 @@ def step_aside(space, points, margin):
 
 @kernel
 def _step_from(free_distance, x, y):
-    """Return the direction away from the one blocked cell at a corner; (0, 0) if not one."""
+    """
+    Return the direction (2,), entries +1 or -1, away from the one blocked cell at a corner.
+
+    It is (0, 0) where not exactly one of the four cells at the grid point (x, y) is blocked.
+    """
     step, n_blocked = np.zeros(2), 0
     for row, up in ((y - 1, 1.0), (y, -1.0)):
         for column, right in ((x - 1, 1.0), (x, -1.0)):

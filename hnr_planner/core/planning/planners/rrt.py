@@ -35,13 +35,13 @@ PROPOSALS_PER_ITERATION = 64
 @dataclass(frozen=True)
 class RRT:
     """
-    The paper's RRT.
+    The paper's planner RRT: one tree from the start.
 
     Attributes
     ----------
     max_step : float
-        Longest extension [m], above 0. Without a limit it is the paper's first version; small
-        steps are its version for dynamic constraints.
+        Length of the longest extension [m], above 0. Without a limit (inf) the planner is the
+        paper's first version; with small steps it is the paper's version for dynamic constraints.
 
     """
 
@@ -52,7 +52,7 @@ class RRT:
         object.__setattr__(self, 'max_step', check_positive('max_step', self.max_step))
 
     def start(self, problem: Problem, rng: Stream) -> 'RRTSearch':
-        """Start a tree at the problem's start."""
+        """Return a search whose tree begins at the problem's start."""
         return RRTSearch(problem, rng, self.max_step / problem.scale)
 
 
@@ -80,27 +80,27 @@ class RRTSearch:
 
     @property
     def samples(self) -> Floats:
-        """The vertices (k, dim)."""
+        """The vertices (k, dim) of the tree, kernel frame, oldest first."""
         return self._vertices[: self._n_vertices]
 
     @property
     def parents(self) -> NDArray[np.int64]:
-        """Index (k,) of the vertex that each was extended from."""
+        """Index (k,) of the vertex from which each vertex was extended; -1 for the start."""
         return self._parents[: self._n_vertices]
 
     @property
     def path(self) -> Floats:
-        """Path (m, dim): the branch of the newest vertex, and an exact goal."""
+        """Path (m, dim) of a solved search: to the newest vertex, then an exact goal."""
         last = self._n_vertices - 1
         return to_goal(self.problem, branch(self._vertices, self._parents, last))
 
     @property
     def counts(self) -> dict[str, int]:
-        """Number of uniform proposals that fell outside the space."""
+        """Further counts by name: ``rejected_proposals``, those that fell outside the space."""
         return {'rejected_proposals': self.rejected}
 
     def advance(self, n_iterations: int) -> None:
-        """Handle at most ``n_iterations`` further proposals inside the space."""
+        """Handle at most ``n_iterations`` proposals inside the space, fewer once solved."""
         if self.solved:
             return
         self._grow_arrays(self._n_vertices + n_iterations)
@@ -126,7 +126,12 @@ class RRTSearch:
 
 @kernel
 def _grow(problem, max_step, rng, vertices, parents, n_vertices, tree, n_iterations):
-    """Grow the tree; return vertices, transitions, rejected proposals, whether it is solved."""
+    """
+    Grow the tree; return numbers of vertices, transitions and rejected proposals, and if solved.
+
+    It ends after ``n_iterations`` transitions, after ``PROPOSALS_PER_ITERATION`` times as many
+    proposals, or when a new vertex reaches the goal.
+    """
     problem, rng, tree = borrowed(problem), borrowed(rng), borrowed(tree)
     vertices, parents = borrowed(vertices), borrowed(parents)
     proposal, iterations, rejected = np.empty(len(problem.start)), 0, 0
@@ -150,14 +155,18 @@ def _grow(problem, max_step, rng, vertices, parents, n_vertices, tree, n_iterati
 
 @kernel
 def draw_in_box(lower, upper, rng, x):
-    """Draw ``x`` (dim,) uniformly from the box from ``lower`` to ``upper``."""
+    """Write a uniform point of the box from ``lower`` to ``upper`` (dim,) to ``x`` (dim,)."""
     for i in range(len(x)):
         x[i] = lower[i] + (upper[i] - lower[i]) * uniform(rng)
 
 
 @kernel
 def extend(problem, max_step, vertex, proposal, end):
-    """Write the ``end`` (dim,) of an extension; return False where it is below the margin."""
+    """
+    Write the ``end`` (dim,) of an extension of ``vertex`` (dim,) towards ``proposal`` (dim,).
+
+    Returns False where the extension is not longer than the margin; then it is not to be used.
+    """
     u = proposal - vertex
     length = norm(u)
     if length <= problem.margin:

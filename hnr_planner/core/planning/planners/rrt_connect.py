@@ -54,14 +54,16 @@ class BoxTrees(NamedTuple):
     Attributes
     ----------
     table : TreePair
-        Their vertices.
+        Vertices of both trees, kernel frame.
     boxes : BoxTree
-        Index of nearest vertices; each tree is one of its roots.
+        Index that finds the nearest vertex: root 0 holds the vertices of the tree at the start,
+        root 1 those of the tree at the goal.
     turn : (1,) int64
-        The tree that is extended next.
+        Number of the tree that is extended next: 0 for the tree at the start, 1 for the goal's.
     drawn : (2,) int64
-        Row of the vertex to step from and row of the other tree's vertex to step towards; NONE
-        where the tree is extended towards a uniform point.
+        Rows in ``table`` of the vertex to step from and of the other tree's vertex to step
+        towards. Both are NONE (-1) where the next step goes towards a uniform point instead, from
+        the vertex nearest to that point.
 
     """
 
@@ -74,13 +76,13 @@ class BoxTrees(NamedTuple):
 @dataclass(frozen=True)
 class RRTConnect:
     """
-    RRT-Connect.
+    The planner RRT-Connect: a tree from each end, each extended towards the other.
 
     Attributes
     ----------
     max_step : float, optional
-        Longest step [m], above 0; a fifth of the diagonal of the box around the space when left
-        out, inf for no limit.
+        Length of the longest step [m], above 0; a fifth of the diagonal of the box around the
+        space when left out, inf for no limit.
 
     """
 
@@ -92,7 +94,7 @@ class RRTConnect:
             object.__setattr__(self, 'max_step', check_positive('max_step', self.max_step))
 
     def start(self, problem: Problem, rng: Stream) -> 'RRTConnectSearch':
-        """Start a tree at each end."""
+        """Return a search whose trees begin at the problem's start and at its goal."""
         if self.max_step is None:
             max_step = STEP * norm(problem.upper - problem.lower)
         else:
@@ -102,7 +104,7 @@ class RRTConnect:
 
 @dataclass
 class RRTConnectSearch(TwoTreeSearch):
-    """Search with two trees; a transition is one step of one of them, free or not."""
+    """Search with two trees; a transition is one step of one tree, free or not."""
 
     max_step: float
     _trees: BoxTrees = field(init=False)
@@ -123,11 +125,11 @@ class RRTConnectSearch(TwoTreeSearch):
 
     @property
     def counts(self) -> dict[str, int]:
-        """No further counts."""
+        """Further counts by name: an empty dict, since RRT-Connect has none."""
         return {}
 
     def advance(self, n_iterations: int) -> None:
-        """Take at most ``n_iterations`` further steps."""
+        """Take ``n_iterations`` further steps, or fewer where the search is solved before."""
         goal = self.iterations + n_iterations
         while not self.solved:
             # Most steps are blocked, so the arrays hold fewer vertices than there are steps.
@@ -152,7 +154,11 @@ class RRTConnectSearch(TwoTreeSearch):
 
 @kernel
 def _plant(problem, trees):
-    """Add a root at the start and, where it is in the same component, one at the goal."""
+    """
+    Add a root at the start and, where the goal lies in the component of the start, at the goal.
+
+    A component is a connected part of free space.
+    """
     copy_into(trees.table.vertices[0], problem.start)
     _add(trees, 0, NONE)
     if component(problem.space, problem.goal) == component(problem.space, problem.start):
@@ -162,7 +168,13 @@ def _plant(problem, trees):
 
 @kernel
 def _grow(problem, max_step, trees, rng, n_iterations):
-    """Take steps until the trees are connected or full: (rows that connect them, steps taken)."""
+    """
+    Take at most ``n_iterations`` steps; return (rows that solve the search, steps taken).
+
+    The rows are those of the two vertices that connect the trees, the start's tree first, or
+    (row, NONE) for a vertex in the goal region; (NONE, NONE) while the search is not solved. The
+    steps also end when the arrays of the trees are full.
+    """
     problem, trees, rng = borrowed(problem), borrowed(trees), borrowed(rng)
     towards, vertices, drawn = np.empty(len(problem.start)), trees.table.vertices, trees.drawn
     n_trees = 2 if trees.table.sizes[1] > 0 else 1
@@ -196,7 +208,12 @@ def _grow(problem, max_step, trees, rng, n_iterations):
 
 @kernel
 def _step(problem, max_step, vertex, target, end):
-    """Write the end of a step from a vertex towards a point: REACHED, ADVANCED or TRAPPED."""
+    """
+    Write the ``end`` of a step from a vertex towards a point (dim,); return the step's outcome.
+
+    The outcome is REACHED where the step ends at ``target``, ADVANCED where ``max_step`` ends it
+    before, and TRAPPED where it is not free or ``target`` is within the margin of the vertex.
+    """
     squared = 0.0
     for i in range(len(end)):
         squared += (target[i] - vertex[i]) ** 2

@@ -27,9 +27,9 @@ class TreePair(NamedTuple):
     Attributes
     ----------
     vertices : (rows, dim)
-        Vertices of both trees, oldest first.
+        Vertices of both trees, kernel frame, oldest first.
     parents : (rows,) int64
-        Row of each vertex's parent, NONE for the roots.
+        Row of each vertex's parent; NONE (-1) for the roots.
     sizes : (2,) int64
         Number of vertices of each tree.
 
@@ -42,7 +42,7 @@ class TreePair(NamedTuple):
 
 @kernel
 def empty_trees(rows, dim):
-    """Return two trees without vertices, with a common capacity of ``rows`` vertices (dim,)."""
+    """Return two trees without vertices, with a common capacity of ``rows`` points (dim,)."""
     vertices, parents = np.empty((rows, dim)), np.empty(rows, dtype=np.int64)
     return TreePair(vertices, parents, np.zeros(2, dtype=np.int64))
 
@@ -55,7 +55,11 @@ def first_free_row(trees):
 
 @kernel
 def add_vertex(trees, tree, parent):
-    """Add the vertex in the first free row to a tree, below row ``parent``; return its row."""
+    """
+    Add the vertex in the first free row to a tree, as a child of row ``parent``; return its row.
+
+    The vertex itself has to be written to that row by the caller.
+    """
     row = first_free_row(trees)
     trees.parents[row] = parent
     trees.sizes[tree] += 1
@@ -63,7 +67,7 @@ def add_vertex(trees, tree, parent):
 
 
 def with_rows(trees: TreePair, rows: int) -> TreePair:
-    """Return the trees with a capacity of ``rows`` at least."""
+    """Return the trees with a common capacity of at least ``rows`` vertices."""
     if len(trees.parents) >= rows:
         return trees
     vertices = with_capacity(trees.vertices, rows)
@@ -73,18 +77,19 @@ def with_rows(trees: TreePair, rows: int) -> TreePair:
 @dataclass
 class TwoTreeSearch(ABC):
     """
-    Search with a tree at each end.
+    Base class of searches with a tree at the start and a tree at the goal.
 
-    A goal region whose centre cannot be reached has no second tree: the first has to enter it.
+    There is no second tree where the centre of a goal region cannot be reached from the start:
+    then the tree of the start has to enter the region.
 
     Attributes
     ----------
     problem : Problem
         The problem to solve, kernel frame.
     rng : Stream
-        Stream of every draw.
+        Random stream of every draw.
     iterations : int
-        Transitions handled.
+        Number of transitions handled.
 
     """
 
@@ -92,7 +97,8 @@ class TwoTreeSearch(ABC):
     rng: Stream
     iterations: int = field(init=False, default=0)
     taut: ClassVar[bool] = False
-    #: Rows that connect the trees, that of the start's first; (k, NONE) for one in the region.
+    #: Rows of the two vertices that connect the trees, the start's tree first; (k, NONE) for a
+    #: vertex k in the goal region; (NONE, NONE) while the search is not solved.
     _ends: tuple[int, int] = field(init=False, default=(NONE, NONE))
 
     @property
@@ -102,12 +108,12 @@ class TwoTreeSearch(ABC):
 
     @property
     def solved(self) -> bool:
-        """Whether the trees are connected, or the first has a vertex in the goal region."""
+        """Whether the trees are connected, or the start's tree has a vertex in the goal region."""
         return self._ends[0] != NONE
 
     @property
     def samples(self) -> Floats:
-        """The vertices (k, dim) of both trees, oldest first."""
+        """The vertices (k, dim) of both trees, kernel frame, oldest first."""
         trees = self._table
         if trees is None:
             return self.problem.start[np.newaxis]
@@ -115,20 +121,24 @@ class TwoTreeSearch(ABC):
 
     @property
     def parents(self) -> NDArray[np.int64]:
-        """Index (k,) of the vertex that each was reached from; -1 for the roots."""
+        """Index (k,) of the vertex from which each vertex was reached; -1 for the roots."""
         trees = self._table
         return np.array([NONE]) if trees is None else trees.parents[: int(trees.sizes.sum())]
 
     @property
     def path(self) -> Floats:
-        """Path (m, dim) along the branches that connect the roots, or into the goal region."""
+        """Path (m, dim) of a solved search, kernel frame: over both trees, or to the region."""
         through = _through(self.samples, self.parents, *self._ends)
         return through if self._ends[1] != NONE else to_goal(self.problem, through)
 
 
 @kernel
 def _through(vertices, parents, first, second):
-    """Return the path (m, dim) from the root of ``first`` over ``second`` to the root of that."""
+    """
+    Return the path (m, dim) from the root of row ``first`` over ``second`` to the latter's root.
+
+    Where ``second`` is NONE the path ends at row ``first``.
+    """
     ahead, back = branch(vertices, parents, first), branch(vertices, parents, second)
     met = len(ahead)
     path = np.empty((met + len(back), vertices.shape[1]))

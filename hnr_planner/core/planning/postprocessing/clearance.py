@@ -1,11 +1,12 @@
 """
-Increase the clearance of a path where there is space; narrow doors are still passed.
+Increase the clearance of a path where there is room; it still passes through narrow doors.
 
 The cost of a path is the integral along it of 1 where the nearest wall is at least ``clearance``
 away, and of ``1 + WEIGHT (clearance / d - 1)`` where its distance ``d`` is less. So a detour pays
 where it moves the path away from a wall, most of all a near one, and in a door the middle is best.
-The path gets vertices where it comes too near; each is moved across the path while that lowers the
-cost, and those that are not needed any more are dropped.
+The path gets vertices where it is nearer to a wall than ``clearance``; each vertex is moved across
+the path while that lowers the cost. Vertices whose removal adds at most the fraction ``ADDED`` to
+the cost are dropped.
 """
 
 from typing import Any, NamedTuple
@@ -26,18 +27,19 @@ from hnr_planner.core.spaces.primitives import segment_is_free
 from hnr_planner.core.spaces.space import Space
 import numpy as np
 
-#: Added cost of a metre where the wall is at half the clearance [m]; and the fraction of the
-#: clearance below which the cost rises no further.
+#: Cost added to each metre of path where the wall is at half the clearance [m]; and the fraction
+#: of the clearance such that the cost is the same at all smaller distances from a wall.
 WEIGHT, NEAREST = 2.0, 0.01
 #: Bounds on the distance between points at which the clearance of a path is measured, and between
-#: its vertices, in units of the typical clearance of the space: both follow that of the wall.
+#: its vertices, in units of the typical clearance of the space. Within these bounds both distances
+#: are in proportion to the distance from the wall.
 FINEST, COARSEST = 0.125, 1.0
 #: Largest number of passes over all vertices.
 PASSES = 10
-#: Shortest step across the path, as a fraction of the finest distance: steps have the coarsest at
-#: first, and are halved where they gain nothing.
+#: Shortest step of a vertex across the path, as a fraction of ``ClearanceCost.finest``. Steps are
+#: ``ClearanceCost.coarsest`` long at first, and are halved where they do not lower the cost.
 LEAST_STEP = 0.125
-#: Fraction of the cost that dropping a vertex may add.
+#: Largest increase of the cost of a section when its vertices are dropped, as a fraction of it.
 ADDED = 5e-4
 
 
@@ -48,11 +50,12 @@ class ClearanceCost(NamedTuple):
     Attributes
     ----------
     walls : array
-        The space's ``walls``.
+        Walls of the space, as ``Space.walls`` holds them for kernels.
     clearance : float
-        Distance to keep from walls, kernel frame.
+        Distance that the path should keep from walls, kernel frame.
     finest, coarsest : float
-        Bounds on the distance between points where the clearance is measured, kernel frame.
+        Least and largest distance along the path between points where the clearance is measured,
+        kernel frame.
 
     """
 
@@ -63,7 +66,7 @@ class ClearanceCost(NamedTuple):
 
 
 def clearance_cost(space: Space, clearance: float) -> ClearanceCost:
-    """Return the cost for a clearance above 0 in the caller's units [m]."""
+    """Return the cost, kernel frame, of paths that should keep a ``clearance`` [m] above 0."""
     finest, coarsest = FINEST * space.typical_clearance, COARSEST * space.typical_clearance
     wanted = min(clearance / space.scale, FARTHEST_WALL)
     return ClearanceCost(space.walls, wanted, finest, max(min(coarsest, wanted / 2.0), finest))
@@ -73,10 +76,11 @@ def increase_clearance(
     space: Space, path: Floats, clearance: float, budget: Budget, islands: Islands = NO_ISLANDS
 ) -> Floats:
     """
-    Move a free path (m, dim) of the caller's frame away from walls, within the budget.
+    Return a free path (m, 2) of the caller's frame moved away from walls, within the budget.
 
-    The ends are kept. The result passes each of the ``islands`` on the side where the path did,
-    and its cost is never larger.
+    The ends are kept. The result passes each of the ``islands`` on the side where ``path`` did.
+    ``path`` itself is returned where the moved path costs no less or is not free in the caller's
+    frame.
     """
     cost = clearance_cost(space, clearance)
     before = points = space.to_kernel(path)
@@ -95,7 +99,11 @@ def increase_clearance(
 def _move_all(
     space: Space, islands: Islands, cost: ClearanceCost, points: Floats, budget: Budget
 ) -> None:
-    """Move the vertices of ``points`` (m, 2), in place, until no step lowers the cost."""
+    """
+    Move the vertices of ``points`` (m, 2), in place, until no step lowers the cost.
+
+    At most ``PASSES`` passes over all vertices are made, and a limit of the budget ends them.
+    """
     steps, costs = np.full(len(points), cost.coarsest), segment_costs(cost, points)
     for _ in range(PASSES):
         if budget.stop() is not None or not move(space.data, islands, cost, points, costs, steps):
@@ -103,7 +111,7 @@ def _move_all(
 
 
 def path_cost(space: Space, path: Floats, clearance: float) -> float:
-    """Return the cost of a path (m, dim) of the caller's frame; its length for clearance 0."""
+    """Return the cost [m] of a path (m, dim), caller's frame: its length where clearance is 0."""
     if clearance == 0.0:
         return float(path_length(path))
     cost = clearance_cost(space, clearance)
@@ -112,7 +120,12 @@ def path_cost(space: Space, path: Floats, clearance: float) -> float:
 
 @kernel
 def segment_costs(cost, points):
-    """Return the costs (m,) of the segments to each vertex: their length where walls are far."""
+    """
+    Return the costs (m,) of the segments of a path (m, dim), kernel frame.
+
+    Entry ``k`` is the cost of the segment from vertex ``k`` - 1 to vertex ``k``, and entry 0 is 0.
+    The cost is the length where no wall is nearer than the clearance.
+    """
     costs = np.zeros(len(points))
     for k in range(1, len(points)):
         costs[k] = _segment_cost(cost, points[k - 1], points[k], np.inf)
@@ -121,7 +134,11 @@ def segment_costs(cost, points):
 
 @kernel
 def _segment_cost(cost, a, b, most):
-    """Return the cost of the segment a-b, or of enough of it to be above ``most``."""
+    """
+    Return the cost of the segment a-b (dim,), kernel frame.
+
+    Where the cost reaches ``most``, some value of at least ``most`` is returned instead.
+    """
     length, covered, lack = distance(a, b), 0.0, 0.0
     if length == 0.0:
         return 0.0
@@ -139,7 +156,7 @@ def _segment_cost(cost, a, b, most):
 
 @kernel
 def spread(cost, points):
-    """Return the path with vertices added where it lacks clearance, denser near walls."""
+    """Return ``points`` (m, dim) with vertices added where walls are near, denser near walls."""
     dense, n_dense = np.empty((2 * len(points), points.shape[1])), 1
     copy_into(dense[0], points[0])
     for k in range(1, len(points)):
@@ -172,9 +189,11 @@ def spread(cost, points):
 @kernel
 def move(space, islands, cost, points, costs, steps):
     """
-    Move each vertex a step across the path where that costs less, or halve its step.
+    Move each inner vertex of ``points`` (m, 2) a step across the path; return whether to go on.
 
-    ``costs`` (m,) are those of the segments to each vertex. Returns whether steps are left to try.
+    A vertex is moved where the path then costs less; else its entry in ``steps`` (m,) is halved.
+    ``costs`` (m,) holds the cost of the segment that ends at each vertex. Returns False once all
+    steps are below ``LEAST_STEP`` times the finest distance.
     """
     n_left = 0
     for k in range(1, len(points) - 1):
@@ -187,7 +206,12 @@ def move(space, islands, cost, points, costs, steps):
 
 @kernel
 def _move_one(space, islands, cost, points, costs, k, step):
-    """Move vertex ``k`` across the line between its neighbours; return whether that costs less."""
+    """
+    Move vertex ``k`` by ``step`` across the line between its neighbours, where that costs less.
+
+    Both segments at the vertex have to stay free, on the same side of each island. Returns whether
+    the vertex was moved; then its entries of ``costs`` are updated too.
+    """
     a, x, b, before = points[k - 1], points[k], points[k + 1], costs[k] + costs[k + 1]
     length = distance(a, b)
     if length == 0.0 or before <= length:
@@ -213,7 +237,13 @@ def _move_one(space, islands, cost, points, costs, k, step):
 
 @kernel
 def drop(space, islands, cost, points):
-    """Return the path without the vertices whose removal adds at most ``ADDED`` of the cost."""
+    """
+    Return the path (k, 2) without the vertices of ``points`` (m, 2) that it can do without.
+
+    From each vertex that is kept, the vertices after it are left out one by one, as long as the
+    segment that replaces them is free, passes each of the ``islands`` on the same side, and costs
+    at most the fraction ``ADDED`` more than the section that it replaces. The ends are kept.
+    """
     kept, n_kept, k = np.empty_like(points), 1, 0
     copy_into(kept[0], points[0])
     while k < len(points) - 1:

@@ -1,10 +1,10 @@
 """
 Kernels that shorten a path by visibility; each returns the number of its visibility tests.
 
-``relax``: the shortest path over some of the vertices, in their order. ``skip``: a vertex is
-followed by the last one visible from it. ``join``: random points of the path are joined. ``pull``:
-each vertex slides along its two segments up to the next obstacle, and the corner that remains is
-cut off, so that the path is taut around obstacles.
+``relax``: the shortest path over some of the vertices, in their order. ``skip``: each vertex is
+followed by the last vertex visible from it. ``join``: random points of the path are joined.
+``pull``: each vertex slides along its two segments up to the next obstacle, and the corner that
+remains is cut off, so that the path is taut around obstacles.
 
 Every segment of the result was tested itself, from its first point to its last: in a space that
 tests segments at single points, a section of a free segment need not be free.
@@ -38,8 +38,9 @@ def relax(space, islands, points, to_end, following, i, tests_max):
     Extend the shortest paths over vertices, in their order, from the end back to vertex ``i``.
 
     ``to_end`` (m,) is the length of the shortest path from each vertex to the last one, and
-    ``following`` (m,) the vertex after it on that path; both are known for the vertices behind
-    ``i``. Returns (vertex to go on with, -1 when all are done; tests).
+    ``following`` (m,) the index of the vertex after it on that path; both are known for the
+    vertices after ``i`` and written for the others. Returns (index of the vertex to go on with, -1
+    when all are done; number of tests, at most ``tests_max``).
     """
     space, islands, points = borrowed(space), borrowed(islands), borrowed(points)
     tests = 0
@@ -63,11 +64,13 @@ def relax(space, islands, points, to_end, following, i, tests_max):
 @kernel
 def skip(space, islands, points, kept, n_kept, every, tests_max):
     """
-    Extend the list of kept vertices: each is followed by the last one visible from it.
+    Extend the list of kept vertices: each is followed by a later vertex visible from it.
 
-    From a vertex ``every`` later one is tested, the last first, or only the last one, the one
-    halfway there, halfway to that, and so on; with too few tests left for all of them it does not
-    begin. Returns (vertices kept, tests).
+    ``kept`` holds indices into ``points`` (m, dim), ``n_kept`` of them at first. From a kept
+    vertex the later ones are tested, the last first, until one is visible: all of them where
+    ``every``, else the last one, the one halfway there, halfway to that one, and so on. A vertex
+    is not begun unless enough of ``tests_max`` are left for it. Returns (number of vertices kept,
+    number of tests).
     """
     space, points = borrowed(space), borrowed(points)
     last, tests = len(points) - 1, 0
@@ -88,7 +91,11 @@ def skip(space, islands, points, kept, n_kept, every, tests_max):
 
 @kernel
 def _may_join(space, islands, points, i, j):
-    """Return whether vertices ``i`` and ``j`` may be joined, on the path's side of islands."""
+    """
+    Return whether the segment from vertex ``i`` to ``j`` may replace the path between them.
+
+    It has to be free and pass each of the ``islands`` on the side where the path passes it.
+    """
     if not segment_is_free(space, points[i], points[j]):
         return False
     after = j + 1
@@ -97,7 +104,11 @@ def _may_join(space, islands, points, i, j):
 
 @kernel
 def join(space, islands, points, rng, n_pairs):
-    """Try to join random pairs of points of the path, by three tests each; return the path."""
+    """
+    Try to join ``n_pairs`` random pairs of points of a path (m, dim); return the path (k, dim).
+
+    Each pair takes at most three visibility tests.
+    """
     space, islands, rng = borrowed(space), borrowed(islands), borrowed(rng)
     for _ in range(n_pairs):
         points = _join_two(space, islands, points, rng)
@@ -106,7 +117,13 @@ def join(space, islands, points, rng, n_pairs):
 
 @kernel
 def pull(space, islands, points, k, margin, tests_max):
-    """Slide and cut the vertices from ``k`` on; return (path, vertex to go on from, tests)."""
+    """
+    Pull a path (m, dim) taut at the vertices from ``k`` on.
+
+    A vertex whose neighbours may be joined is dropped. Any other slides towards one neighbour and
+    then the other, and its corner is cut. A vertex is not begun unless ``TESTS_OF_A_PULL`` of
+    ``tests_max`` are left. Returns (path, index of the vertex to go on from, number of tests).
+    """
     space, islands = borrowed(space), borrowed(islands)
     tests = 0
     while k < len(points) - 1 and tests + TESTS_OF_A_PULL <= tests_max:
@@ -132,7 +149,11 @@ def pull(space, islands, points, k, margin, tests_max):
 
 @kernel
 def _slide(space, islands, a, x, b, margin):
-    """Slide ``x`` towards ``a`` to ``margin`` before the segment to ``b`` is blocked."""
+    """
+    Slide ``x`` (dim,), in place, towards ``a`` as long as the segment from it to ``b`` is free.
+
+    It stops ``margin`` before the point where that segment is blocked or passes an island.
+    """
     free, blocked = 0.0, 1.0
     for _ in range(HALVINGS):
         middle = (free + blocked) / 2.0
@@ -148,7 +169,12 @@ def _slide(space, islands, a, x, b, margin):
 
 @kernel
 def _cut(space, islands, a, x, b, margin):
-    """Cut the corner a-x-b as far as is free; return its vertices (2, dim), or ``x`` (1, dim)."""
+    """
+    Return two vertices (2, dim) that cut the corner a-x-b as far as is free, or ``x`` (1, dim).
+
+    It is ``x`` where the cut would shorten the two segments by less than ``LEAST_CUT`` of their
+    length or one of the new segments is not free.
+    """
     free, blocked = 0.0, 1.0
     for _ in range(HALVINGS):
         middle = (free + blocked) / 2.0
@@ -191,7 +217,11 @@ def _replaced(points, k, others):
 
 @kernel
 def _join_two(space, islands, points, rng):
-    """Try to join two random points, uniform along the length of the path; return the path."""
+    """
+    Try to join two random points, uniform along the length of a path (m, dim); return the path.
+
+    They are joined where all new segments are free and the homology class stays the same.
+    """
     along = _lengths_along(points)
     s, t = along[-1] * uniform(rng), along[-1] * uniform(rng)
     i, j = _segment_at(along, min(s, t)), _segment_at(along, max(s, t))
@@ -211,7 +241,7 @@ def _join_two(space, islands, points, rng):
 
 @kernel
 def _lengths_along(points):
-    """Return the length of the path up to each of its vertices (m,)."""
+    """Return the lengths (m,) of a path (m, dim) from its start to each of its vertices."""
     along = np.zeros(len(points))
     for k in range(1, len(points)):
         along[k] = along[k - 1] + norm(points[k] - points[k - 1])
@@ -220,7 +250,7 @@ def _lengths_along(points):
 
 @kernel
 def _segment_at(along, s):
-    """Return the index of the segment that holds the point at length ``s``."""
+    """Return the index of the segment at length ``s``, given ``_lengths_along`` of the path."""
     k = 0
     while k < len(along) - 2 and along[k + 1] <= s:
         k += 1
@@ -229,7 +259,7 @@ def _segment_at(along, s):
 
 @kernel
 def _point_on(points, along, k, s):
-    """Return the point (dim,) at length ``s`` on segment ``k``."""
+    """Return the point (dim,) on segment ``k`` at length ``s`` from the start of the path."""
     length = along[k + 1] - along[k]
     fraction = (s - along[k]) / length if length > 0.0 else 0.0
     return points[k] + fraction * (points[k + 1] - points[k])
@@ -237,7 +267,7 @@ def _point_on(points, along, k, s):
 
 @kernel
 def _joined(points, i, a, b, j):
-    """Return the path with all between vertices ``i`` and ``j`` replaced by the segment a-b."""
+    """Return the path with the vertices between ``i`` and ``j`` replaced by ``a`` and ``b``."""
     kept = i + 1
     shorter = np.empty((kept + 2 + len(points) - j, points.shape[1]))
     copy_rows(shorter[:kept], points)

@@ -29,9 +29,9 @@ PAIRS, PAIRS_IN_SPACE, PAIRS_IN_A_BATCH = 5, 50, 100
 #: again while that leaves less than this fraction of them.
 MANY = 256
 WORTHWHILE = 0.8
-#: Rounds end with one that gains less than this fraction of the length.
+#: Rounds of shortening end after a round that shortens the path by less than this fraction.
 LEAST_GAIN = 1e-3
-#: Fraction of the length above which a path counts as the same one, rounded.
+#: Ratio of the new length to the old one at and above which a path counts as not shortened.
 SHORTER = 1.0 - 1e-12
 
 
@@ -44,16 +44,16 @@ def simplify(
     time_limit: float | None = None,
 ) -> Floats:
     """
-    Shorten a free path.
+    Return a free path that is no longer than ``path``, from the same start to the same goal.
 
     Parameters
     ----------
     space : Space
         Where the path has to be free.
     path : (m, dim)
-        At least two points, every segment free.
+        At least two points in the caller's frame [m], every segment between them free.
     seed : int, optional
-        Fresh when left out.
+        Seed of all random draws; a fresh one when left out.
     max_iterations : int
         Largest number of visibility tests.
     time_limit : float, optional
@@ -102,8 +102,10 @@ def shorten(
     """
     Shorten a free path (m, dim) of the caller's frame within the budget; its ends are kept.
 
-    It passes each of the ``islands`` on the side where it did before. Where the coordinates of the
-    caller's frame round the result into an obstacle, the halves of the path are shortened instead.
+    At most ``tests_max`` visibility tests are made. The result (k, dim) passes each of the
+    ``islands`` on the side where ``path`` did; it is ``path`` itself where that cannot be
+    shortened. Where the coordinates of the caller's frame round the result into an obstacle, the
+    halves of the path are shortened instead, unless it has fewer than 4 vertices.
     """
     shorter, tests = _shortened(space, path, rng, budget, tests_max, islands)
     if path_length(shorter) >= SHORTER * path_length(path):
@@ -123,7 +125,11 @@ def shorten(
 def _shortened(
     space: Space, path: Floats, rng: Stream, budget: Budget, tests_max: int, islands: Islands
 ) -> tuple[Floats, int]:
-    """Return a shorter path, free in the kernel frame, in the caller's frame; and the tests."""
+    """
+    Return a shorter path (k, dim), caller's frame, and the number of visibility tests made.
+
+    The path was tested in the kernel frame; it need not be free in the caller's coordinates.
+    """
     points, tests = skip_vertices(space, space.to_kernel(path), budget, tests_max, islands)
     length, gain = path_length(points), math.inf
     while len(points) > 2 and gain > LEAST_GAIN * length and budget.stop() is None:
@@ -143,7 +149,11 @@ def _tighten(
     budget: Budget,
     tests_max: int,
 ) -> tuple[Floats, int]:
-    """Join random points of a path, then pull it taut at each vertex; return (path, tests)."""
+    """
+    Join random points of a path, then pull it taut at each vertex.
+
+    Returns (path (k, dim), kernel frame; number of visibility tests, at most ``tests_max``).
+    """
     pairs_of_a_segment = PAIRS if space.dim <= 2 else PAIRS_IN_SPACE
     pairs, tests = min(pairs_of_a_segment * (len(points) - 1), tests_max // 3), 0
     while pairs > 0 and budget.stop() is None:
@@ -169,7 +179,8 @@ def skip_vertices(
     Drop vertices of a path (m, dim) of the kernel frame; return (path, number of tests).
 
     In the plane each vertex is followed by the last one visible from it, since the result is
-    easily pulled taut. In more dimensions it is not, so the shortest path over vertices is taken.
+    easily pulled taut. In more dimensions the result is not easily pulled taut, so the shortest
+    path over vertices is taken, unless more than ``MANY`` vertices are left.
     """
     tests, before = 0, math.inf
     while MANY < len(points) < WORTHWHILE * before:
@@ -186,7 +197,11 @@ def skip_vertices(
 def _shortest_over_vertices(
     space: Space, points: Floats, islands: Islands, budget: Budget, tests_max: int
 ) -> tuple[Floats, int]:
-    """Return the shortest path over some of the vertices, in their order: (path, tests)."""
+    """
+    Return the shortest path (k, dim) over some of ``points``, in their order, and the tests made.
+
+    Where a limit of the budget or ``tests_max`` ends the work, the path is the shortest found.
+    """
     lengths = np.linalg.norm(np.diff(points, axis=0), axis=1)
     to_end = np.append(np.cumsum(lengths[::-1])[::-1], 0.0)
     following = np.arange(1, len(points) + 1)
@@ -209,7 +224,11 @@ def _pass_over(
     budget: Budget,
     tests_max: int,
 ) -> tuple[Floats, int]:
-    """Skip along all of a path: (path, tests)."""
+    """
+    Skip vertices along all of a path (``skip``); return (path (k, dim), number of tests).
+
+    Where a limit of the budget or ``tests_max`` ends the work, the rest of ``points`` is kept.
+    """
     kept, n_kept, last = np.zeros(len(points), dtype=np.int64), 1, len(points) - 1
     began, tests = 0, 0
     while began < n_kept and kept[n_kept - 1] < last and budget.stop() is None:

@@ -54,7 +54,9 @@ def build_data(
     before: RoadmapData, space: Space, n_draws: int, seed: int, cancel: Event | None
 ) -> RoadmapData:
     """
-    Return the data of ``space`` from ``n_draws`` draws, given the data before a change.
+    Return the roadmap data of ``space`` from ``n_draws`` draws, given the data before a change.
+
+    The change is of the space or of the number of draws; only what it affects is computed.
 
     Raises
     ------
@@ -106,7 +108,11 @@ def _cast_and_find_corners(
     seed: int,
     cancel: Event | None,
 ) -> tuple[Floats, Floats, tuple[Floats, Floats]]:
-    """Return rays, new corners (n, dim), and a box (lower, upper) around newly free space."""
+    """
+    Return rays (k, N_RAYS, dim), new corners (n, dim), and a box around newly free space.
+
+    The box is (lower, upper), each (dim,); lower is above upper where no space has become free.
+    """
     rays, known = np.full((2, len(draws), N_RAYS, space.dim), np.nan)
     known[stays] = before.rays[: len(draws)][stays[: len(before.rays)]]
     opened_box = np.full(space.dim, np.inf), np.full(space.dim, -np.inf)
@@ -126,7 +132,9 @@ def _choose_nodes(
     before: RoadmapData, space: Space, corners: Floats
 ) -> tuple[Floats, NDArray[np.int64]]:
     """
-    Return the nodes (n, dim) among old nodes and corners, and which each was before, or NONE.
+    Return nodes (n, dim) chosen from old nodes and corners, and the old index (n,) of each node.
+
+    The old index is NONE (-1) for a corner that was no node before.
 
     At most ``NODES_MAX`` are kept: old nodes on shortest paths first, then corners in the order in
     which they were found, which favours those found often, then the other old nodes.
@@ -149,7 +157,9 @@ def _choose_nodes(
 
 def _stable(space: Space, points: Floats) -> Floats:
     """
-    Return those of ``points`` that are free and equal after conversion to the caller's frame.
+    Return the free ones of ``points`` (k, dim) that conversion to the caller's frame keeps equal.
+
+    The points are first converted to that frame and back ``ROUNDS`` times.
 
     A path over such nodes is checked in the caller's frame with the very numbers that it was
     found with.
@@ -171,9 +181,12 @@ def _known_visibility(
     columns: NDArray[np.int64],
 ) -> Visibility:
     """
-    Return the visibility (k, n) that pairs had before a change; UNKNOWN where they had none.
+    Return the visibility (k, n) that pairs of points keep after a change; UNKNOWN for the others.
 
-    ``rows`` (k,) and ``columns`` (n,) are the old indices of the pairs' points, or NONE.
+    In another space than before, pairs that were visible are UNKNOWN too.
+
+    ``rows`` (k,) and ``columns`` (n,) are the old indices of the pairs' points, NONE (-1) for a
+    point that is new.
     """
     known = np.full((len(rows), len(columns)), UNKNOWN, dtype=np.uint8)
     old_rows, old_columns = np.flatnonzero(rows != NONE), np.flatnonzero(columns != NONE)
@@ -191,7 +204,11 @@ def _resolve(
     opened_box: tuple[Floats, Floats],
     cancel: Event | None,
 ) -> None:
-    """Compute the unknown entries of ``visibility`` (k, n), and those through the opened box."""
+    """
+    Compute unknown entries of ``visibility`` (k, n) between ``points`` and ``others``, in place.
+
+    Hidden pairs whose segment meets ``opened_box`` (lower, upper) are computed again.
+    """
     for chunk in in_chunks(len(points), cancel):
         if (opened_box[0] <= opened_box[1]).all():
             mark_unknown_through(*opened_box, points[chunk], others, visibility[chunk])
@@ -205,7 +222,11 @@ def _repair_paths(
     visibility: Visibility,
     cancel: Event | None,
 ) -> ShortestPaths:
-    """Return the shortest paths between nodes, repaired from those before the change."""
+    """
+    Return the shortest paths between ``nodes`` (n, dim), repaired from those before a change.
+
+    ``was`` (n,) is the old index of each node, NONE (-1) for a new node.
+    """
     paths = empty_paths(len(nodes))
     old = np.flatnonzero(was != NONE)
     if len(old) > 0:
@@ -234,7 +255,11 @@ def _find_exits(
     paths: ShortestPaths,
     cancel: Event | None,
 ) -> NDArray[np.bool_]:
-    """Return the exits (g, n) bool: nodes over which shortest paths reach each of the guides."""
+    """
+    Return which of the nodes are exits of which guides, (g, n) bool.
+
+    Only the shortest paths from the first ``n_sources`` guides are followed.
+    """
     is_exit = np.zeros(guide_visibility.shape, dtype=bool)
     edges = edges_of(guides, nodes, guide_visibility)
     for chunk in in_chunks(min(n_sources, len(guides)), cancel):

@@ -20,7 +20,7 @@ CORNERS_MAX = 16
 
 @kernel
 def cast_rays(space, points, rng, rays):
-    """Take Hit-and-Run steps from each of ``points`` (n, dim); write their ends to ``rays``."""
+    """Take k steps of Hit-and-Run from each of ``points`` (n, dim); write the ends to ``rays``."""
     space, points, rng, rays = borrowed(space), borrowed(points), borrowed(rng), borrowed(rays)
     for point in range(len(points)):
         for k in range(rays.shape[1]):
@@ -32,8 +32,9 @@ def find_corners(space, points, rays, known, offset):
     """
     Find the corners (c, dim) between the ends of successive rays from the same point.
 
-    Pairs that are equal in ``known``, the earlier rays (n, k, dim) or NaN, are left out. A corner
-    is moved off the obstacle by ``offset``.
+    ``rays`` (n, k, dim) are the ends of the rays from ``points`` (n, dim). Pairs of rays that are
+    equal in ``known`` (n, k, dim), the earlier rays or NaN, are left out. A corner is moved off
+    the obstacle by ``offset``, kernel frame.
     """
     space, points, rays = borrowed(space), borrowed(points), borrowed(rays)
     corners = np.empty((len(points) * rays.shape[1] * CORNERS_MAX, points.shape[1]))
@@ -50,7 +51,11 @@ def find_corners(space, points, rays, known, offset):
 
 @kernel
 def _corners_around(space, a, x, b, offset, corners):
-    """Pull the path a-x-b taut and write its corners, from b to a; return their number."""
+    """
+    Pull the path a-x-b (dim,) taut and write its ``corners``, from b to a; return their number.
+
+    At most ``CORNERS_MAX`` corners are found.
+    """
     corner = b
     for n in range(CORNERS_MAX):
         if segment_is_free(space, a, corner):
@@ -91,7 +96,11 @@ def _corner_behind(space, a, x, b, offset, corner):
 
 @kernel
 def _move_off_obstacle(space, x, offset):
-    """Move ``x`` by ``offset``, along the mean of the diagonal directions that are free."""
+    """
+    Move ``x`` (dim,), in place, by ``offset`` along the mean of the free diagonal directions.
+
+    It stays where it is if no direction is free or the free ones cancel out.
+    """
     y, free = np.empty(len(x)), np.zeros(len(x))
     for signs in range(1 << len(x)):
         for i in range(len(x)):
@@ -105,9 +114,10 @@ def _move_off_obstacle(space, x, offset):
 @kernel
 def widen_to_opened(space, points, rays, known, lower, upper):
     """
-    Widen a box to hold the points at which ``space``, before a change, blocks rays that are new.
+    Widen the box from ``lower`` to ``upper`` (dim,), in place, towards space that has become free.
 
-    So the box covers the space that has become free since.
+    ``space`` is the space before a change. The box is widened to hold each point at which that
+    space blocks a ray that is new: one of ``rays`` (n, k, dim) that differs from ``known``.
     """
     for point in range(len(points)):
         for k in range(rays.shape[1]):
@@ -126,7 +136,8 @@ def distinct(points, n_kept, radius):
     """
     Return which of ``points`` (k, dim) to keep so that none is a duplicate: (k,) bool.
 
-    The first ``n_kept`` are kept, and others unless they are within ``radius`` of one kept before.
+    The first ``n_kept`` points are kept, and each later point unless it is within ``radius`` of a
+    point kept before it.
     """
     is_kept = np.zeros(len(points), dtype=np.bool_)
     order = np.argsort(points[:, 0], kind='mergesort')
@@ -139,7 +150,7 @@ def distinct(points, n_kept, radius):
 
 @kernel
 def _kept_is_near(points, is_kept, order, rank, radius):
-    """Return whether a kept point is within ``radius`` of the point of this rank in x."""
+    """Return whether a kept point is within ``radius`` of the point at ``rank`` in order of x."""
     x = points[order[rank]]
     for step in (-1, 1):
         other = rank + step

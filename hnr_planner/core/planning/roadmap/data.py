@@ -15,27 +15,29 @@ N_RAYS = 32
 @dataclass(frozen=True, eq=False)
 class RoadmapData:
     """
-    Everything that a roadmap has computed of its space, kernel frame.
+    All data that a roadmap has computed for its space; points are in the kernel frame.
 
     Attributes
     ----------
     space : Space
+        The space for which the data hold.
     n_draws : int
         Number of slots for draws; none is filled in a space without free points.
     age : int
-        Number of times that the roadmap was built or updated.
+        Number of times that the data were built, updated or grown.
     draws : (k, dim)
-        Uniform draws, one for each slot.
+        Uniform points of free space, one for each slot.
     rays : (k, N_RAYS, dim)
-        Ends of Hit-and-Run steps from each draw.
+        Ends of the ``N_RAYS`` Hit-and-Run steps from each draw.
     nodes : (n, dim)
         Corners of obstacles, moved a little into free space.
     visibility : (n, n), guide_visibility (g, n)
-        Visibility of the nodes from the nodes, and from the first g draws, the *guides*.
+        Visibility (HIDDEN, VISIBLE or UNKNOWN) of the nodes, as columns, from each node, and from
+        each of the first g draws, the *guides*.
     shortest_paths : ShortestPaths
         Shortest paths between the nodes.
     exits : Exits
-        Nodes over which shortest paths leave the guides.
+        Nodes over which shortest paths leave each of the guides.
 
     """
 
@@ -52,7 +54,7 @@ class RoadmapData:
 
 
 def empty_roadmap(space: Space) -> RoadmapData:
-    """Return the data of a space without draws."""
+    """Return the data of a roadmap of ``space`` that has no draws and no nodes yet."""
     none, no_pairs = np.empty((0, space.dim)), np.empty((0, 0), dtype=np.uint8)
     exits = exits_of(none, no_pairs.astype(bool), *space.kernel_bounds)
     rays = np.empty((0, N_RAYS, space.dim))

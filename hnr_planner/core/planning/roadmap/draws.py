@@ -14,7 +14,8 @@ from hnr_planner.core.spaces.space import Space
 import numpy as np
 from numpy.typing import NDArray
 
-#: Uniform proposals for each starting point, and Hit-and-Run steps from there to a draw.
+#: Number of uniform proposals for each starting point, and of Hit-and-Run steps from a starting
+#: point to a draw.
 PROPOSALS, STEPS = 64, 8
 #: Purposes of random streams: starting points, walks.
 ROOTS, WALK = 0, 1
@@ -24,11 +25,11 @@ def draw_slots(
     before: RoadmapData, space: Space, n_draws: int, seed: int, cancel: Event | None
 ) -> tuple[Floats, NDArray[np.bool_]]:
     """
-    Return a uniform draw for each slot (k, dim), and which of them were kept (k,) bool.
+    Return a uniform draw for each slot (k, dim), and which of the draws were kept (k,) bool.
 
-    Each slot makes a new draw. It keeps its old one, unless that is not free any more or the new
-    one was not free before: so draws that were uniform on the old space are uniform on the new
-    one.
+    A new draw is made for each slot. A slot keeps its old draw, unless that is not free any more
+    or the new draw was not free before: so draws that were uniform on the old space are uniform on
+    the new one. Where no free point is found, no slot has a draw (k = 0).
     """
     roots = np.empty((n_draws, space.dim))
     n_roots = _free_points(
@@ -51,7 +52,11 @@ def draw_slots(
 
 @kernel
 def _free_points(space, lower, upper, rng, proposals, points):
-    """Fill ``points`` (k, dim) with free points, by ``proposals`` for each; return the number."""
+    """
+    Write free points, uniform in free space, to ``points`` (k, dim); return their number.
+
+    They are fewer than k where ``proposals`` for each point do not yield enough.
+    """
     n = 0
     for _ in range(proposals * len(points)):
         if n == len(points):
@@ -64,7 +69,7 @@ def _free_points(space, lower, upper, rng, proposals, points):
 
 @kernel
 def _walk(space, rng, steps, points):
-    """Move each of ``points`` (k, dim) by ``steps`` Hit-and-Run steps."""
+    """Move each of ``points`` (k, dim), in place, by ``steps`` Hit-and-Run steps."""
     space, rng, points = borrowed(space), borrowed(rng), borrowed(points)
     y = np.empty(points.shape[1])
     for k in range(len(points)):

@@ -31,19 +31,20 @@ STEPS_MAX = 64
 
 class Exits(NamedTuple):
     """
-    Draws and their exits, bin by bin.
+    Draws and their exits, ordered by the bins that hold the draws.
 
     Attributes
     ----------
     bins : Bins
+        Bins that divide the box around the space.
     first_draw : (bins + 1,) int64
-        Index where the draws of each bin begin.
+        Index in ``draws`` where the draws of each bin begin.
     draws : (k, dim)
         Draws, kernel frame, bin by bin.
     first_exit : (k + 1,) int64
-        Index where the exits of each draw begin.
+        Index in ``nodes`` where the exits of each draw begin.
     nodes : (exits,) int64
-        Exits of all draws, draw by draw.
+        Rows of the roadmap's nodes that are the exits of each draw, draw by draw.
 
     """
 
@@ -55,7 +56,11 @@ class Exits(NamedTuple):
 
 
 def exits_of(draws: Floats, is_exit: NDArray[np.bool_], lower: Floats, upper: Floats) -> Exits:
-    """Return the exits of ``draws`` (k, dim) in a box: the nodes that ``is_exit`` (k, n) marks."""
+    """
+    Return the exits of ``draws`` (k, dim): the nodes that ``is_exit`` (k, n) marks for each draw.
+
+    Draws without an exit are left out. The bins cover the box from ``lower`` to ``upper`` (dim,).
+    """
     useful = is_exit.any(axis=1)
     draws, is_exit = draws[useful], is_exit[useful]
     extent = (upper - lower)[:2]
@@ -79,8 +84,9 @@ def mark_exits(space, draws, edges, sources, distance, is_exit):
     """
     Mark the exits of all draws, by the shortest paths from the draws numbered ``sources``.
 
-    Sets ``is_exit`` (k, n) for the last node before a draw on a path from a draw not visible from
-    it.
+    ``edges`` lead from the draws (k, dim) to the nodes, and ``distance`` (n, n) is between nodes.
+    Sets ``is_exit`` (k, n) for the last node before a draw on the shortest path to it from a
+    source from which the draw is not visible.
     """
     space, draws, edges = borrowed(space), borrowed(draws), borrowed(edges)
     from_source = np.empty(len(distance), dtype=np.float32)
@@ -106,8 +112,9 @@ def visible_nodes(space, nodes, exits, x, leaves):
     """
     Return the nodes visible from ``x`` among the exits of the nearest draws, and their distances.
 
-    Where none of those is visible all nodes are tested. Segments are tested in the direction of
-    the path: from ``x`` when ``leaves``, else from the nodes to ``x``.
+    The nodes are rows of ``nodes`` (n, dim); all points are in the kernel frame. Where none of
+    those exits is visible, all nodes are tested. Segments are tested in the direction of the path:
+    from ``x`` (dim,) when ``leaves``, else from the nodes to ``x``.
     """
     visible, distance = np.empty(len(nodes), dtype=np.int64), np.empty(len(nodes))
     if not contains(space, x):
@@ -127,7 +134,11 @@ def visible_nodes(space, nodes, exits, x, leaves):
 
 @kernel
 def _add_visible(space, x, nodes, candidates, leaves, is_new, visible, distance, n):
-    """Append visible candidates, each tested once, to the first ``n``; return the new number."""
+    """
+    Append candidates visible from ``x`` to the first ``n`` of ``visible``; return their number.
+
+    Candidates are rows of ``nodes``; those that ``is_new`` marks as tested already are left out.
+    """
     for node in candidates:
         if is_new[node]:
             is_new[node] = False
@@ -143,7 +154,11 @@ def _add_visible(space, x, nodes, candidates, leaves, is_new, visible, distance,
 
 @kernel
 def _nearest_draws(exits, x, near):
-    """Write the nearest draws in the bins around ``x``, in order; return their number."""
+    """
+    Write the indices of the draws nearest to ``x`` (dim,), the nearest first; return their number.
+
+    Only draws in the bin that holds ``x`` and the 8 bins around it are found.
+    """
     nearest_squared = np.empty(len(near))
     n, at = 0, bin_of(exits.bins, x)
     for row in (-1, 0, 1):
@@ -166,7 +181,11 @@ def _nearest_draws(exits, x, near):
 
 @kernel
 def walk_to_node(space, nodes, exits, x, rng):
-    """Take Hit-and-Run steps from ``x`` until a node is visible; return the points (k, dim)."""
+    """
+    Take Hit-and-Run steps from ``x`` (dim,) until a node is visible; return the points (k, dim).
+
+    ``x`` is the first point. After ``STEPS_MAX`` steps the walk ends without a visible node.
+    """
     walk = np.empty((STEPS_MAX + 1, len(x)))
     copy_into(walk[0], x)
     steps = 0

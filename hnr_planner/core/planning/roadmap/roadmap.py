@@ -36,14 +36,14 @@ class Roadmap:
     """
     A planner with the shortest paths of its space computed in advance: ``Roadmap.build``.
 
-    It is immutable: ``update`` and ``grow`` return new ones. A result is a pure function of the
-    roadmap, the request and its seed; the seed matters only where no node is visible from start
-    or goal.
+    It is immutable: ``update`` and ``grow`` return new roadmaps. A result is a pure function of
+    the roadmap, the request and its seed; the seed matters only where the roadmap does not connect
+    nodes visible from start and goal.
 
     Attributes
     ----------
     seed : int
-        The seed that reproduces it.
+        The seed that reproduces the roadmap.
 
     """
 
@@ -86,7 +86,9 @@ class Roadmap:
 
     def update(self, space: Space, *, cancel: Event | None = None) -> 'Roadmap':
         """
-        Return a roadmap of ``space``: this one, repaired where the spaces differ.
+        Return a roadmap of ``space``: the data of this roadmap, repaired where the spaces differ.
+
+        Where ``space`` is of another kind or has another frame, its roadmap is built from nothing.
 
         Raises
         ------
@@ -102,7 +104,7 @@ class Roadmap:
 
     def grow(self, *, cancel: Event | None = None) -> 'Roadmap':
         """
-        Return a roadmap of the same space from twice as many draws, with shorter paths.
+        Return a roadmap of the same space from twice as many draws, for shorter paths.
 
         Raises
         ------
@@ -116,12 +118,12 @@ class Roadmap:
 
     @property
     def space(self) -> Space:
-        """The space that it was built for; requests have to be for the same object."""
+        """The space of the roadmap; the space of a request has to be this very object."""
         return self._data.space
 
     @property
     def nodes(self) -> Floats:
-        """Nodes (n, dim): corners of the space, in the caller's frame."""
+        """Nodes (n, dim): corners of obstacles, moved a little into free space, caller's frame."""
         return self.space.from_kernel(self._data.nodes)
 
     def start(self, problem: Problem, rng: Stream) -> PathSearch:
@@ -156,7 +158,7 @@ class SolvedSearch:
     path : (m, dim)
         Path from start to goal, kernel frame.
     taut : bool
-        Whether the path is taut already, so that shortening gains nothing.
+        Whether the path is taut already, so that it is not shortened.
 
     """
 
@@ -167,17 +169,17 @@ class SolvedSearch:
 
     @property
     def samples(self) -> Floats:
-        """The path itself."""
+        """Vertices (m, dim) of the path, kernel frame."""
         return self.path
 
     @property
     def parents(self) -> NDArray[np.int64]:
-        """Index (m,) of the vertex before each; -1 for the start."""
+        """Index (m,) of the vertex before each vertex of the path; -1 for the start."""
         return np.arange(-1, len(self.path) - 1)
 
     @property
     def counts(self) -> dict[str, int]:
-        """No further counts."""
+        """Further counts by name: an empty dict, since a roadmap has none."""
         return {}
 
     def advance(self, n_iterations: int) -> None:
@@ -185,7 +187,11 @@ class SolvedSearch:
 
 
 def _check_plane(space: Space) -> None:
-    """Raise RequestError for dim > 2, where shortest paths bend anywhere along edges."""
+    """
+    Raise RequestError for a space that has not dimension 2.
+
+    In more dimensions shortest paths bend anywhere along edges of obstacles, not at corners.
+    """
     if space.dim != 2:
         raise RequestError(
             f'a roadmap is of the corners of a plane: space must have dimension 2, this '
@@ -206,8 +212,8 @@ def shortest_path(space, nodes, paths, exits, ahead, back):
     """
     Return the shortest path (m, dim) over nodes that joins two walks; (0, dim) if there is none.
 
-    The walks (k, dim) begin at the start and at the goal; a node is visible from their last
-    points.
+    The walks (k, dim), ``ahead`` and ``back``, begin at the start and at the goal. The path
+    follows both and connects their last points over nodes visible from these points.
     """
     space, nodes, paths, exits = borrowed(space), borrowed(nodes), borrowed(paths), borrowed(exits)
     leaving, before = visible_nodes(space, nodes, exits, ahead[-1], True)

@@ -29,8 +29,8 @@ def resolve(space, points, others, visibility):
     """
     Test the pairs of ``points`` (k, dim) and ``others`` (m, dim) whose visibility is unknown.
 
-    ``visibility`` (k, m) is updated. A segment has to be free from either end, so that a path
-    over it holds in both directions.
+    ``visibility`` (k, m) is updated in place. A pair is visible if its segment is free when tested
+    from either end, so that a path over it is free in both directions.
     """
     space, points, others = borrowed(space), borrowed(points), borrowed(others)
     for i in range(len(points)):
@@ -44,7 +44,11 @@ def resolve(space, points, others, visibility):
 
 @kernel
 def mark_unknown_through(lower, upper, points, others, visibility):
-    """Mark hidden pairs as unknown whose segment meets the box from ``lower`` to ``upper``."""
+    """
+    Mark hidden pairs as UNKNOWN whose segment meets the box from ``lower`` to ``upper`` (dim,).
+
+    Pairs are of ``points`` (k, dim) and ``others`` (m, dim); ``visibility`` (k, m) is updated.
+    """
     for i in range(len(points)):
         for j in range(len(others)):
             if visibility[i, j] == HIDDEN and _crosses(points[i], others[j], lower, upper):
@@ -73,11 +77,11 @@ class Edges(NamedTuple):
     Attributes
     ----------
     first : (n + 1,) int64
-        Index of the first edge of each point; the last entry is the number of edges.
+        Index in ``to`` of the first edge of each point; the last entry is the number of edges.
     to : (edges,) int64
-        Index of the end point of each edge.
+        Index of the end point of each edge among the points to which the edges lead.
     length : (edges,) float32
-        Length of the edge.
+        Length of each edge, kernel frame.
 
     """
 
@@ -103,9 +107,11 @@ class ShortestPaths(NamedTuple):
     Attributes
     ----------
     distance : (n, n) float32
-        Length of the path from the first node to the second; inf where there is none.
+        Length of the path from the row's node to the column's node, kernel frame; inf where there
+        is no path.
     previous : (n, n) int16
-        Node before the second on that path; NONE where there is none, and at the first itself.
+        Index of the node before the column's node on that path; NONE (-1) where there is no path,
+        and on the diagonal.
 
     """
 
@@ -160,7 +166,11 @@ def repair(paths, rows, edges, visibility, new, new_length):
 
 @kernel
 def _mark_intact(root, previous, visibility, intact, trail):
-    """Write 1 to ``intact`` (n,) for nodes whose path from the root has all its edges, else 0."""
+    """
+    Write 1 to ``intact`` (n,) for nodes whose path from node ``root`` has all its edges, else 0.
+
+    ``previous`` (n,) are the nodes before each node; ``trail`` (n,) is a work array.
+    """
     unknown = -1
     for k in range(len(intact)):
         intact[k] = unknown
