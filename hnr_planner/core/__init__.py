@@ -1,8 +1,8 @@
 """
 The algorithms, free of ROS: spaces, walks on them, and planners.
 
-The public names are loaded when they are first used, so that importing this package costs nothing;
-``hnr_planner`` itself has the same ones.
+The module of a public name is imported when the name is first used, so that importing this package
+alone costs nothing. The package ``hnr_planner`` has the same public names.
 
 >>> space = GridSpace.from_blocked(np.zeros((20, 20), bool), resolution=0.5)
 >>> plan(space, start=(1, 1), goal=(9, 9), seed=0).status
@@ -29,7 +29,7 @@ __all__ = sorted(_MODULE_OF)
 
 
 def __getattr__(name: str) -> Any:
-    """Return a public name, loaded now and kept for the next time."""
+    """Return the object of a public name: import its module, and keep the object for later."""
     if name not in _MODULE_OF:
         raise AttributeError(f'module {__name__!r} has no attribute {name!r}')
     value = getattr(import_module(_MODULE_OF[name]), name)
@@ -38,5 +38,5 @@ def __getattr__(name: str) -> Any:
 
 
 def __dir__() -> list[str]:
-    """Return the names of this module, those not loaded yet included."""
+    """Return the names of this module, and the public names that are not loaded yet."""
     return sorted({*globals(), *__all__})

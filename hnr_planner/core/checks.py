@@ -20,7 +20,11 @@ SEED_MAX = 2**63
 
 
 def check_numbers(name: str, values: ArrayLike, error: type[HnrError] = RequestError) -> Floats:
-    """Return ``values`` of any shape as a fresh float array, or raise ``error``."""
+    """
+    Return ``values`` of any shape as a fresh float array, or raise ``error``.
+
+    The numbers may be nan or infinite.
+    """
     try:
         return np.array(values, dtype=np.float64, order='C')
     except (TypeError, ValueError, OverflowError):
@@ -28,7 +32,11 @@ def check_numbers(name: str, values: ArrayLike, error: type[HnrError] = RequestE
 
 
 def check_points(name: str, points: ArrayLike, dim: int) -> Floats:
-    """Return ``points`` (k, dim) or (dim,) as a fresh float array, or raise RequestError."""
+    """
+    Return ``points`` (k, dim) or (dim,) as a fresh float array, or raise RequestError.
+
+    The coordinates may be nan or infinite; only the shape is checked.
+    """
     array = check_numbers(name, points)
     if array.ndim not in (1, 2) or array.shape[-1] != dim:
         raise RequestError(f'{name} must have shape (k, {dim}) or ({dim},), got {array.shape}')
@@ -56,7 +64,7 @@ def check_vector(name: str, vector: ArrayLike, error: type[HnrError] = RequestEr
 
 
 def check_direction(name: str, direction: ArrayLike, dim: int) -> Floats:
-    """Return ``direction`` (dim,), finite and not zero, or raise RequestError."""
+    """Return ``direction`` (dim,) as a fresh array; raise RequestError if zero or not finite."""
     array = check_point(name, direction, dim)
     if not array.any():
         raise RequestError(f'{name} must not be zero, got {array.tolist()}')
@@ -72,7 +80,7 @@ def check_real(name: str, value: Any, error: type[HnrError] = RequestError) -> f
 
 
 def check_number(name: str, value: Any, lower: float, upper: float = math.inf) -> float:
-    """Return ``value`` as a float in [lower, upper], or raise RequestError."""
+    """Return ``value`` as a float in [lower, upper], never nan, or raise RequestError."""
     number = check_real(name, value)
     if not lower <= number <= upper:
         raise RequestError(f'{name} must be in {lower:g}..{upper:g}, got {number!r}')
@@ -99,7 +107,7 @@ def check_count(name: str, value: Any, lower: int) -> int:
 
 
 def check_choice(name: str, value: Any, choices: tuple[str, ...]) -> str:
-    """Return ``value`` when it is one of ``choices``, or raise RequestError."""
+    """Return ``value`` unchanged if it is one of ``choices``; raise RequestError otherwise."""
     if value not in choices:
         raise RequestError(f'{name} must be one of {", ".join(choices)}, got {value!r}')
     return str(value)
@@ -107,18 +115,21 @@ def check_choice(name: str, value: Any, choices: tuple[str, ...]) -> str:
 
 def check_seed(seed: Seed) -> int:
     """
-    Return a seed as an int of at least 0, which results name and which repeats them.
+    Return a seed as an int of at least 0, or raise RequestError.
+
+    Results state that int; given as the seed again, it repeats the same random draws.
 
     Parameters
     ----------
     seed : int, numpy.random.SeedSequence, numpy.random.Generator or None
-        A seed sequence always gives the same int, from its state. A generator (or a bit generator)
-        gives its next one, and is advanced by that. None gives a fresh one.
+        A seed sequence always gives the same int, computed from its state. From a generator (or a
+        bit generator) an int is drawn, which advances the generator. None gives a random int of
+        the operating system.
 
     Raises
     ------
     RequestError
-        When it is none of these, or below 0.
+        When ``seed`` is of none of these types, or a number below 0.
 
     """
     if seed is None:

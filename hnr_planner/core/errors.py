@@ -2,11 +2,15 @@
 
 
 class HnrError(Exception):
-    """Root of every error of the package; the particular ones are also built-in errors."""
+    """
+    The base class of every error that the package raises on purpose.
+
+    Errors in arguments are also a ``ValueError``, and a stuck chain is also a ``RuntimeError``.
+    """
 
 
 class SpaceError(HnrError, ValueError):
-    """The arguments of a space describe none: the message names the value and the rule."""
+    """The arguments for building a space describe no space: the message names value and rule."""
 
 
 class RequestError(HnrError, ValueError):
@@ -18,8 +22,8 @@ class Cancelled(HnrError):
 
 
 class Interrupted(HnrError):
-    """An interpreted kernel ended early: its time was over, or the call was cancelled."""
+    """An interpreted kernel ended early: its time limit had passed, or the call was cancelled."""
 
 
 class StuckError(HnrError, RuntimeError):
-    """A chain of a random walk has stopped moving."""
+    """A chain of a random walk has not moved for many steps in a row (1000)."""

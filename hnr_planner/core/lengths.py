@@ -25,7 +25,7 @@ def distance(a, b):
 
 @kernel
 def path_length(path):
-    """Return the length of a path (m, dim)."""
+    """Return the length of a path (m, dim): the sum over its segments; 0 for a single point."""
     total = 0.0
     for k in range(1, len(path)):
         total += distance(path[k - 1], path[k])

@@ -1,4 +1,8 @@
-"""Trees as arrays of parents: entry ``k`` is the row of the parent of row ``k``."""
+"""
+Trees as arrays of parents: entry ``k`` is the row of the parent of row ``k``.
+
+The parent of a root is ``NONE``, -1. One array can hold several trees.
+"""
 
 from hnr_planner.core.kernels.copies import copy_into
 from hnr_planner.core.kernels.kernel import kernel
@@ -10,7 +14,11 @@ NONE = -1
 
 @kernel
 def rows_to(parents, k):
-    """Return the rows (m,) from the root of row ``k`` to ``k``; (0,) for NONE."""
+    """
+    Return the rows (m,) from the root of the tree of row ``k`` to ``k``, both included.
+
+    The array is empty, (0,), where ``k`` is ``NONE``, -1.
+    """
     length, row = 0, k
     while row != NONE:
         length, row = length + 1, parents[row]
@@ -23,7 +31,11 @@ def rows_to(parents, k):
 
 @kernel
 def branch(samples, parents, k):
-    """Return the samples (m, dim) from the root of sample ``k`` to ``k``; (0, dim) for NONE."""
+    """
+    Return the samples (m, dim) from the root of the tree of sample ``k`` to ``k``.
+
+    Both ends are included. The array is empty, (0, dim), where ``k`` is ``NONE``, -1.
+    """
     rows = rows_to(parents, k)
     points = np.empty((len(rows), samples.shape[1]))
     for i in range(len(rows)):

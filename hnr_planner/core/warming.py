@@ -1,9 +1,11 @@
 """
-Machine code ahead of the first request: waited for, in the background, or for an image.
+Compilation of the kernels to machine code ahead of the first request.
 
 A use of the package (``USES``) is a workload: a function that makes typical requests on a small
 grid, and so calls every kernel of that use. ``warm_up`` runs it and waits for the machine code
-that is missing; ``compile_in_background`` returns at once; ``compile_all`` reports its progress.
+that is missing; ``compile_in_background`` returns at once, before the code is compiled;
+``compile_all`` compiles into the cache on disk, for installers and container images, and reports
+its progress.
 """
 
 from collections.abc import Callable
@@ -49,7 +51,8 @@ def warm_up(*uses: str) -> None:
     Parameters
     ----------
     *uses : str
-        Kinds of requests: 'paths', 'motions' of systems, 'samples'; all of them when left out.
+        Kinds of requests: 'paths', 'motions' of dynamic systems, 'samples'; all three kinds when
+        none is named.
 
     Raises
     ------
@@ -66,8 +69,9 @@ def compile_in_background(*uses: str) -> None:
     """
     Load the machine code for requests on a grid, compile what is missing; return at once.
 
-    Requests run meanwhile, interpreted where they have to; the kernels that they call are compiled
-    first. ``hnr_planner.core.kernels.compilation.status`` returns the progress.
+    Requests can run meanwhile. Where a kernel is not compiled yet, they run it interpreted, and it
+    is compiled before the kernels that no request has called.
+    ``hnr_planner.core.kernels.compilation.status`` returns the progress.
 
     Parameters
     ----------
@@ -169,7 +173,7 @@ def find_motions() -> None:
 
 
 def _reduce_motion(space: GridSpace, system: DoubleIntegrator, start: tuple[float, ...]) -> None:
-    """Reduce a motion of one step: it calls the kernel that long motions need."""
+    """Reduce a motion of one step at rest, to call a kernel that else only long motions call."""
     request = check_kinodynamic_request(
         space,
         system,
@@ -189,7 +193,7 @@ def _reduce_motion(space: GridSpace, system: DoubleIntegrator, start: tuple[floa
 
 
 def draw_samples() -> None:
-    """Draw by every walk, and ask for a chord."""
+    """Draw one sample by every walk, and compute one chord."""
     space = _small_grid()
     for walk in WALKS:
         sample(space, START, 1, walk=walk, seed=0)
@@ -227,5 +231,9 @@ USES = {
 
 
 def _workloads(uses: tuple[str, ...]) -> list[Workload]:
-    """Return the workloads of uses, all if there are none named; or raise RequestError."""
+    """
+    Return the workloads of the named uses, or all if ``uses`` is empty.
+
+    Raise RequestError for a name that is not in ``USES``.
+    """
     return [USES[check_choice('use', use, tuple(USES))] for use in uses or USES]

@@ -1,4 +1,4 @@
-"""A ball in any dimension."""
+"""An open ball as a space, in any dimension."""
 
 import math
 from typing import NamedTuple
@@ -33,7 +33,7 @@ class BallData(NamedTuple):
     radii : (k,)
         Radii of the balls.
     max_gap : float
-        Longest gap between two balls that a ray can cross.
+        Longest gap between two balls that counts as free: a ray passes over it.
 
     """
 
@@ -85,7 +85,11 @@ class BallSpace(Space):
         return self.radius / (self.dim + 1)
 
     def compiled_at(self, origin: Floats | None) -> BallData:
-        """Return the compiled ball in the caller's frame moved to ``origin`` (dim,), or not."""
+        """
+        Return the compiled ball with coordinates counted from ``origin``, along the caller's axes.
+
+        ``origin`` (dim,) is a point of the caller's frame; None keeps the caller's own origin.
+        """
         shift = np.zeros(self.dim) if origin is None else origin
         return BallData((self.centre - shift)[np.newaxis], np.array([self.radius]), 0.0)
 
@@ -114,7 +118,7 @@ def _count_pieces(balls):
 @piece_contains.register(BallData)
 @inlined
 def _piece_contains(balls, k, x, closed):
-    """Compare the squared distance from the centre of ball ``k`` with its squared radius."""
+    """Return whether ball ``k`` contains ``x`` (dim,), its sphere included when ``closed``."""
     squared = 0.0
     for i in range(len(x)):
         squared += (x[i] - balls.centres[k, i]) ** 2
@@ -125,7 +129,11 @@ def _piece_contains(balls, k, x, closed):
 @piece_span.register(BallData)
 @inlined
 def _piece_span(balls, k, x, u, closed):
-    """Return the interval of the line in ball ``k``: between the roots of a s^2 + 2 b s + c."""
+    """
+    Return the interval of parameters s of the line ``x + s u`` in ball ``k``.
+
+    Its ends are the roots of a s^2 + 2 b s + c; (inf, -inf) where the line misses the ball.
+    """
     a, b, squared = 0.0, 0.0, 0.0
     for i in range(len(x)):
         offset = x[i] - balls.centres[k, i]
@@ -148,7 +156,11 @@ def _piece_span(balls, k, x, u, closed):
 @add_crossings.register(BallData)
 @kernel
 def _add_crossings(balls, curve, end, crossings, n):
-    """Append the parameters where a curve meets the spheres; return their number."""
+    """
+    Append to ``crossings``, from index ``n``, the parameters where a curve meets the spheres.
+
+    Return ``n`` plus their number, also of those that do not fit.
+    """
     for k in range(len(balls.radii)):
         n = add_sphere_crossings(curve, balls.centres[k], balls.radii[k], end, crossings, n)
     return n

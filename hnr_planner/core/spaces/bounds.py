@@ -1,4 +1,4 @@
-"""Bounds: a box around a space, and whether floating-point numbers resolve it."""
+"""Bounds of spaces: checks that floating-point numbers resolve them, and the kernel origin."""
 
 import math
 
@@ -28,7 +28,11 @@ def check_bounds(name: str, lower: Floats, upper: Floats) -> None:
 
 
 def check_corners(lower: ArrayLike, upper: ArrayLike) -> tuple[Floats, Floats]:
-    """Return the corners (dim,) of a box as fresh arrays, or raise SpaceError."""
+    """
+    Return the corners (dim,) of a box as fresh arrays, or raise SpaceError.
+
+    The box has to satisfy ``check_bounds``: ``lower`` below ``upper`` in every coordinate.
+    """
     begin = check_vector('lower', lower, SpaceError)
     end = check_vector('upper', upper, SpaceError)
     if begin.shape != end.shape:
@@ -41,36 +45,40 @@ def check_corners(lower: ArrayLike, upper: ArrayLike) -> tuple[Floats, Floats]:
 
 def kernel_origin(lower: Floats, upper: Floats) -> Floats | None:
     """
-    Return the origin (dim,) of the kernel frame of a space with these bounds; None for zero.
+    Return the origin (dim,) of the kernel frame, in the caller's frame; None for the zero vector.
 
-    A coordinate that does not resolve ``FINEST`` of its side is counted from the middle of the
-    bounds, the others from 0. Then the subtraction of the origin is exact for points in the bounds
-    (Sterbenz's lemma), and a space near 0 keeps the caller's frame.
+    A coordinate whose floating-point spacing is above ``FINEST`` of the side of the bounds is
+    counted from the middle of the bounds, the others from 0. Then the subtraction of the origin is
+    exact for points in the bounds (Sterbenz's lemma), and a space near 0 keeps the caller's frame.
     """
     is_far = _rounding(lower, upper) > FINEST * (upper - lower)
     return np.where(is_far, lower + (upper - lower) / 2.0, 0.0) if is_far.any() else None
 
 
 def in_words(vector: Floats) -> str:
-    """Format a vector (dim,) for a repr: short numbers, of many the first and last two."""
+    """Format a vector (dim,) for a repr, in short numbers; of more than 6 the first and last 2."""
     return np.array2string(
         vector, separator=', ', threshold=6, edgeitems=2, formatter={'float_kind': '{:g}'.format}
     )
 
 
 def _rounding(lower: Floats, upper: Floats) -> Floats:
-    """Return the spacing (dim,) of floating-point numbers at the far end of the bounds."""
+    """Return the spacing (dim,) of floats at the bound that is farther from 0, for each axis."""
     return np.asarray(np.spacing(np.maximum(np.abs(lower), np.abs(upper))))
 
 
 def _words(lower: Floats, upper: Floats) -> str:
-    """Return bounds in full, for a message."""
+    """Format bounds (dim,) with all their numbers, for a message."""
     return f'{lower.tolist()} .. {upper.tolist()}'
 
 
 @kernel
 def box_span(lower, upper, x, u):
-    """Return the interval of the line ``x + s u`` in a closed box; (inf, -inf) for none."""
+    """
+    Return the interval of parameters s at which ``x + s u`` is in a closed box.
+
+    Where the line misses the box, the first end is above the last.
+    """
     first, last = -math.inf, math.inf
     for i in range(len(x)):
         below, above = lower[i] - x[i], upper[i] - x[i]

@@ -1,4 +1,4 @@
-"""A box whose sides run along the axes."""
+"""An open box as a space, with sides along the axes, in any dimension."""
 
 import math
 from typing import NamedTuple
@@ -30,7 +30,7 @@ class BoxData(NamedTuple):
     lower, upper : (k, dim)
         Corners of the boxes.
     max_gap : float
-        Longest gap between two boxes that a ray can cross.
+        Longest gap between two boxes that counts as free: a ray passes over it.
 
     """
 
@@ -71,7 +71,11 @@ class BoxSpace(Space):
         return self.lower.copy(), self.upper.copy()
 
     def compiled_at(self, origin: Floats | None) -> BoxData:
-        """Return the compiled box in the caller's frame, its origin moved to ``origin`` (dim,)."""
+        """
+        Return the compiled box with coordinates counted from ``origin``, along the caller's axes.
+
+        ``origin`` (dim,) is a point of the caller's frame; None keeps the caller's own origin.
+        """
         shift = np.zeros(self.dim) if origin is None else origin
         return BoxData((self.lower - shift)[np.newaxis], (self.upper - shift)[np.newaxis], 0.0)
 
@@ -103,7 +107,7 @@ def _count_pieces(boxes):
 @piece_contains.register(BoxData)
 @inlined
 def _piece_contains(boxes, k, x, closed):
-    """Compare every coordinate with the faces of box ``k``."""
+    """Return whether box ``k`` contains ``x`` (dim,), its faces included when ``closed``."""
     for i in range(len(x)):
         below, above = x[i] - boxes.lower[k, i], boxes.upper[k, i] - x[i]
         if not (min(below, above) > 0.0 or (closed and min(below, above) == 0.0)):
@@ -114,7 +118,7 @@ def _piece_contains(boxes, k, x, closed):
 @piece_span.register(BoxData)
 @inlined
 def _piece_span(boxes, k, x, u, closed):
-    """Intersect the line with the two faces of box ``k`` across each axis."""
+    """Return the interval of the line ``x + s u`` in box ``k``; (inf, -inf) for none."""
     first, last = -math.inf, math.inf
     for i in range(len(x)):
         below, above = boxes.lower[k, i] - x[i], boxes.upper[k, i] - x[i]
@@ -132,7 +136,11 @@ def _piece_span(boxes, k, x, u, closed):
 @add_crossings.register(BoxData)
 @kernel
 def _add_crossings(boxes, curve, end, crossings, n):
-    """Append the parameters where a curve meets planes of faces; return their number."""
+    """
+    Append to ``crossings``, from index ``n``, where a curve meets the planes of the faces.
+
+    Return ``n`` plus the number of these parameters, also of those that do not fit.
+    """
     for k in range(len(boxes.lower)):
         for i in range(boxes.lower.shape[1]):
             f = coordinate(curve, i)

@@ -1,9 +1,10 @@
 """
-Functions of the user that compiled code calls by address, which is data to a kernel.
+Functions of the user that compiled kernels call by address.
 
-A function compiled by numba costs no more than a call. One in Python takes the interpreter's lock
-for each call, a few microseconds; an exception ends the kernel with an ``OracleError``. In
-both cases kernels are compiled, and cached on disk, once for all functions.
+A function compiled by numba costs no more than a compiled call. A function in Python takes the
+interpreter's lock for each call, a few microseconds. An exception in a function in Python ends the
+kernel with an ``OracleError``. The address is a number in the data of a space, so kernels are
+compiled, and cached on disk, once for all functions.
 """
 
 from collections.abc import Callable
@@ -30,7 +31,11 @@ _raised = threading.local()
 
 
 class OracleError(HnrError):
-    """A function of the user that a space calls has raised an exception: the cause of this one."""
+    """
+    A function of the user that a space calls has raised an exception.
+
+    That exception is the ``__cause__`` of this error.
+    """
 
     def __init__(self) -> None:
         self.__cause__ = getattr(_raised, 'error', None)
@@ -39,16 +44,17 @@ class OracleError(HnrError):
 
 def callback(function: Callable[..., Any], n_arrays: int) -> Any:
     """
-    Return a function in the form that ``ask`` calls.
+    Return a function as a C function, whose ``address`` ``ask`` calls.
 
-    It has to be kept for as long as its ``address`` is used.
+    Keep a reference to the returned object for as long as its address is used.
 
     Parameters
     ----------
     function : callable
-        Of ``n_arrays`` arrays (dim,), returns a number or a truth value. Compiled by numba or not.
+        A function of ``n_arrays`` arrays (dim,) that returns a number or a truth value, compiled
+        by numba or not.
     n_arrays : int
-        1 or 2.
+        Number of arrays (dim,) that the function takes: 1 or 2.
 
     """
     if isinstance(function, Dispatcher):
@@ -57,14 +63,14 @@ def callback(function: Callable[..., Any], n_arrays: int) -> Any:
 
 
 def address(called_back: Any) -> int:
-    """Return the address of what ``callback`` returned."""
+    """Return the address of a C function that ``callback`` returned."""
     if isinstance(called_back, _C_TYPE):
         return int(ctypes.cast(called_back, ctypes.c_void_p).value or 0)
     return int(called_back.address)
 
 
 def _python(function: Callable[..., Any], n_arrays: int) -> Any:
-    """Return a function in Python as a C function that takes the interpreter's lock."""
+    """Return a function in Python as a C function, which takes the interpreter's lock."""
 
     def answer(numbers: int, count: int, result: int) -> int:
         try:
@@ -98,13 +104,18 @@ def _native(function: Dispatcher, n_arrays: int) -> Any:
 
 
 def ask(at: int, numbers: Any, result: Any) -> int:
-    """Call a function by address, write its result to ``result`` (1,); return 0, or FAILED."""
+    """
+    Call the function at address ``at`` and write its result to ``result`` (1,).
+
+    ``numbers`` (n,) holds its arrays (dim,) one after another. Return 0, or ``FAILED``, -1, when
+    the function raised an exception.
+    """
     return _C_TYPE(at)(numbers.ctypes.data, len(numbers), result.ctypes.data)
 
 
 @intrinsic
 def _call(_typing_context: Any, at: Any, numbers: Any, count: Any, result: Any) -> Any:
-    """Call the function at an address from compiled code."""
+    """Generate the call of the C function at address ``at``, with two pointers and a count."""
 
     def generate(_context: Any, builder: Any, _signature: Any, arguments: Any) -> Any:
         ir: Any = cgutils.ir

@@ -1,10 +1,10 @@
 """
-The cache of a chain: its position, and what a space stores for it between steps.
+The cache of a chain: the chain's point, and what a space stores for the chain between steps.
 
 A walk alternately computes the chord through its point and moves along it. A space may reuse
 results of the step before: a polytope stores the distances to its planes, and updates only those
-that a step changes. It registers its own kernels for the functions of this module; every other
-space caches nothing.
+that a step changes. A polytope registers its own kernels for the functions of this module; every
+other space stores no results.
 """
 
 from typing import Any, NamedTuple
@@ -42,7 +42,7 @@ class ChainCache(NamedTuple):
 @dispatched
 @kernel
 def memory_size(space: CompiledSpace, dim: int) -> int:
-    """Return the number of floats that ``space`` stores for each chain."""
+    """Return the number of floats that ``space`` needs for each chain, beside its point."""
     return 2 * dim
 
 
@@ -52,8 +52,8 @@ def open_cache(space: CompiledSpace, x: Floats, memory: Floats) -> Any:
     """
     Return the cache of a chain: views of its point ``x`` (dim,) and of its ``memory``.
 
-    Its first two fields are ``x``, which the other kernels move, and ``y`` (dim,), a work array
-    for the next point.
+    ``memory`` has ``memory_size`` floats. The first two fields of the cache are ``x``, which the
+    other kernels move, and ``y`` (dim,), a work array for the next point.
     """
     dim = len(x)
     return ChainCache(x, memory[:dim], memory[dim:])
@@ -62,16 +62,16 @@ def open_cache(space: CompiledSpace, x: Floats, memory: Floats) -> Any:
 @dispatched
 @inlined
 def refresh(space: CompiledSpace, cache: Any) -> None:
-    """Recompute the cache from the chain's point alone."""
+    """Recompute the stored results, if there are any, from the chain's point alone."""
 
 
 @dispatched
 @inlined
 def chord_cached(space: CompiledSpace, cache: Any, u: Floats, axis: int) -> tuple[float, float]:
     """
-    Return the chord of the chain's point along ``u`` (dim,): parameters (lower, upper).
+    Return the chord through the chain's point along ``u`` (dim,): parameters (lower, upper).
 
-    ``axis`` is the index of the axis along which ``u`` is the unit vector, or ``NO_AXIS``.
+    ``axis`` is the index of the axis along which ``u`` is the unit vector, or ``NO_AXIS``, -1.
     """
     for i in range(len(u)):
         cache.back[i] = -u[i]
@@ -82,9 +82,9 @@ def chord_cached(space: CompiledSpace, cache: Any, u: Floats, axis: int) -> tupl
 @inlined
 def move_along(space: CompiledSpace, cache: Any, u: Floats, axis: int, s: float) -> bool:
     """
-    Move to ``x + s u`` on the line of the last chord; return whether the chain moved.
+    Move the chain to ``x + s u`` on the line of its last chord; return whether it moved.
 
-    The chain does not move where ``x + s u`` rounds to a point that is not free.
+    The chain stays where it is if ``x + s u`` rounds to a point that is not free.
     """
     for i in range(len(u)):
         cache.y[i] = cache.x[i] + s * u[i]
@@ -93,7 +93,7 @@ def move_along(space: CompiledSpace, cache: Any, u: Floats, axis: int, s: float)
 
 @inlined
 def move_if_free(space, cache):
-    """Move to ``cache.y`` where that is a free point; return whether it is."""
+    """Move the chain to ``cache.y`` if that is a free point; return whether the chain moved."""
     if not contains(space, cache.y):
         return False
     for i in range(len(cache.x)):

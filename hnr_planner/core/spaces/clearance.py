@@ -6,7 +6,7 @@ field gives the first ring with an occupied cell; the search ends with the ring 
 square can be nearer to the piece than the nearest found so far.
 
 Kernel frame: ``wall_distance`` (rows, cols) is the Chebyshev distance [cells] to the nearest
-occupied cell, and lengths are in cells.
+occupied cell, points are (x, y) = (column, row), and all lengths are in cells.
 """
 
 import math
@@ -16,13 +16,18 @@ import numpy as np
 
 #: Largest value of the distance field: farther cells have this value [cells].
 FARTHEST_WALL = 254.0
-#: Least length of a piece of a path; others are as long as the clearance there [cells].
+#: Least length of a piece of a path [cells]; where the least distance found so far is longer, a
+#: piece is that long.
 SHORTEST_PIECE = 2.0
 
 
 @kernel
 def point_clearance(wall_distance, points):
-    """Return the distances (k,) from points (k, 2) to the nearest occupied square, or inf."""
+    """
+    Return the distances (k,) from points (k, 2) to the nearest occupied square.
+
+    Lengths are in cells. The distances are inf where no square is occupied.
+    """
     clearance = np.empty(len(points))
     for k in range(len(points)):
         x, y = points[k]
@@ -32,13 +37,17 @@ def point_clearance(wall_distance, points):
 
 @kernel
 def clearance_within(wall_distance, x, most):
-    """Return the distance from a point (2,) to the nearest occupied square, at most ``most``."""
+    """Return the distance [cells] from ``x`` (2,) to an occupied square, or ``most`` if less."""
     return _piece_clearance(wall_distance, x[0], x[1], x[0], x[1], most)
 
 
 @kernel
 def path_clearance(wall_distance, path):
-    """Return the least distance from a path (m, 2) to an occupied square; inf without one."""
+    """
+    Return the least distance [cells] from a path (m, 2) to an occupied square.
+
+    It is inf where no square is occupied.
+    """
     x, y = path[0]
     least = _piece_clearance(wall_distance, x, y, x, y, math.inf)
     for k in range(1, len(path)):
@@ -57,7 +66,7 @@ def path_clearance(wall_distance, path):
 
 @kernel
 def _piece_clearance(wall_distance, ax, ay, bx, by, least):
-    """Return the distance from the segment a-b to the nearest square, at most ``least``."""
+    """Return the smaller of ``least`` and the distance from segment a-b to an occupied square."""
     rows, columns = wall_distance.shape
     half = math.hypot(bx - ax, by - ay) / 2.0
     column = min(max(math.floor((ax + bx) / 2.0), 0), columns - 1)
@@ -78,9 +87,10 @@ def _piece_clearance(wall_distance, ax, ay, bx, by, least):
 @kernel
 def _side_clearance(wall_distance, row, column, up, right, n, ax, ay, bx, by, least):
     """
-    Return the distance from the segment a-b to the occupied cells of a row, at most ``least``.
+    Return the smaller of ``least`` and the distance from segment a-b to the side of a ring.
 
-    The row has ``n`` cells from (row, column) on, in steps of (up, right).
+    The distance is that to the occupied cells of the side, which has ``n`` cells from
+    (row, column) on, in steps of (up, right).
     """
     rows, columns = wall_distance.shape
     x, y, half = (ax + bx) / 2.0, (ay + by) / 2.0, math.hypot(bx - ax, by - ay) / 2.0
@@ -99,10 +109,11 @@ def _side_clearance(wall_distance, row, column, up, right, n, ax, ay, bx, by, le
 
 @kernel
 def _square_distance(ax, ay, bx, by, column, row):
-    """Return the distance between the segment a-b and the square of a cell."""
+    """Return the distance between the segment a-b and the square of a cell; 0 if they meet."""
     if _crosses(ax, ay, bx, by, column, row):
         return 0.0
-    # Of two disjoint ones, a nearest pair has an end of the segment or a corner of the square.
+    # If the two are disjoint, then in a nearest pair of their points, one is an end of the segment
+    # or a corner of the square.
     nearest = min(
         math.hypot(_outside(ax, column), _outside(ay, row)),
         math.hypot(_outside(bx, column), _outside(by, row)),
@@ -132,7 +143,11 @@ def _point_to_segment(x, y, ax, ay, bx, by):
 
 @kernel
 def _crosses(ax, ay, bx, by, column, row):
-    """Return whether the segment a-b meets the square of a cell: both slabs at once."""
+    """
+    Return whether the segment a-b meets the closed square of a cell.
+
+    It does where one parameter is both between its left and right and its lower and upper sides.
+    """
     first, last = 0.0, 1.0
     for a, d, cell in ((ax, bx - ax, column), (ay, by - ay, row)):
         if d == 0.0:

@@ -1,4 +1,4 @@
-"""Checks of the members of composed spaces, and their summary in a repr."""
+"""Checks of the members of unions, differences and products, and their summary in a repr."""
 
 from collections.abc import Iterable
 from itertools import groupby
@@ -9,7 +9,7 @@ from hnr_planner.core.spaces.space import Space
 
 
 def check_members(members: Iterable[Any]) -> tuple[Space, ...]:
-    """Return the members of a composed space, at least one, or raise SpaceError."""
+    """Return the members as a tuple; raise SpaceError unless there is one and all are spaces."""
     spaces = tuple(members)
     if not spaces:
         raise SpaceError('there must be at least one member, got none')
@@ -20,7 +20,7 @@ def check_members(members: Iterable[Any]) -> tuple[Space, ...]:
 
 
 def check_same_dim(members: Iterable[Space]) -> int:
-    """Return the dimension that all members have, or raise SpaceError."""
+    """Return the dimension that all members share, or raise SpaceError if they differ."""
     dims = sorted({member.dim for member in members})
     if len(dims) > 1:
         raise SpaceError(f'the members must be of one dimension, got {dims}')
@@ -28,6 +28,6 @@ def check_same_dim(members: Iterable[Space]) -> int:
 
 
 def summary(members: Iterable[Space]) -> str:
-    """Return how many members there are of each kind, such as ``2 BoxSpace, 1 BallSpace``."""
+    """Count each run of consecutive members of one kind, such as ``2 BoxSpace, 1 BallSpace``."""
     kinds = groupby(type(member).__name__ for member in members)
     return ', '.join(f'{len(list(group))} {kind}' for kind, group in kinds)

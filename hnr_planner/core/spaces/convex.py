@@ -1,11 +1,11 @@
 """
 Convex pieces: sets whose intersection with every line is one interval.
 
-Such a compiled space is the union of one piece or several of one kind, in common arrays, so that a
-union of many is one short loop. Each array has one row for each piece, and the last field,
-``max_gap``, is the longest gap between two pieces that a ray can cross. A
-type decorated with ``convex`` registers kernels for ``count_pieces``, ``piece_contains`` and
-``piece_span``, and the primitives follow from them.
+A compiled space of convex pieces is the union of one or more pieces of one kind, such as balls.
+Each of its arrays has one row for each piece, and its last field, ``max_gap``, is the longest gap
+between two pieces that counts as free: a ray passes over it. A type decorated with ``convex``
+registers kernels for ``count_pieces``, ``piece_contains`` and ``piece_span``, from which the
+primitives of this module are computed.
 """
 
 from collections.abc import Sequence
@@ -26,7 +26,7 @@ DataType = TypeVar('DataType', bound=type)
 @dispatched
 @kernel
 def count_pieces(space: CompiledSpace) -> int:
-    """Return the number of pieces."""
+    """Return the number of convex pieces of ``space``."""
     raise NotImplementedError
 
 
@@ -45,13 +45,18 @@ def piece_span(
     """
     Return the interval of the line ``x + s u`` in piece ``k``; (inf, -inf) for none.
 
-    Open and closed pieces differ in the lines that only touch them, or run along a face.
+    A line that only touches a piece, or runs along a face, has an interval in the piece only when
+    ``closed``.
     """
     raise NotImplementedError
 
 
 def convex(data_type: DataType) -> DataType:
-    """Register the primitives for NamedTuples of ``data_type``, whose pieces are convex."""
+    """
+    Register the primitives for NamedTuples of ``data_type``, whose pieces are convex.
+
+    Return ``data_type``, so that this can be used as a decorator.
+    """
     for primitive, answer in (
         (primitives.contains, _contains),
         (primitives.touches, _touches),
@@ -70,7 +75,11 @@ def is_convex(data: CompiledSpace) -> bool:
 
 
 def pack(pieces: Sequence[Any], max_gap: float) -> Any:
-    """Return the union of compiled spaces of one type, with gaps up to ``max_gap`` closed."""
+    """
+    Return the union of compiled spaces of one type, in common arrays.
+
+    Gaps up to ``max_gap`` between the pieces count as free: a ray passes over them.
+    """
     fields = zip(*(data[:-1] for data in pieces), strict=True)
     return type(pieces[0])(*map(np.concatenate, fields), max_gap)
 
@@ -98,7 +107,12 @@ def _any_contains(space, x, closed):
 
 @kernel
 def _first_exit(space, x, u, t, horizon):
-    """Follow the line to the end of a piece, and on in pieces that contain that end."""
+    """
+    Return the first parameter from ``t`` on at which the line leaves the union of the pieces.
+
+    From the end of a piece that contains the line at ``t``, the line is followed on as long as a
+    piece contains the point ``max_gap`` beyond that end.
+    """
     s = t
     for k in range(count_pieces(space)):
         lower, upper = piece_span(space, k, x, u, False)
@@ -130,7 +144,7 @@ def _first_entry(space, x, u, t):
 
 @kernel
 def _chord(space, x, u, back):
-    """Intersect the line with a single piece; with several, follow it in both directions."""
+    """Return the chord through ``x``: the line in a single piece, or followed through several."""
     if count_pieces(space) > 1:
         return -first_exit(space, x, back, 0.0, math.inf), first_exit(space, x, u, 0.0, math.inf)
     lower, upper = piece_span(space, 0, x, u, False)

@@ -1,4 +1,4 @@
-"""A space without the points of others."""
+"""The difference of spaces: the points of a base space outside of removed spaces."""
 
 from functools import cached_property
 import math
@@ -77,7 +77,7 @@ class DifferenceSpace(Space):
         self._kernel_origin = kernel_origin(*self.bounds)
 
     def __repr__(self) -> str:
-        """Name the base and the kinds of what is removed."""
+        """Name the base and count the removed spaces by kind."""
         return f'DifferenceSpace(base={self.base!r}, removed: {summary(self.removed)})'
 
     @cached_property
@@ -86,7 +86,11 @@ class DifferenceSpace(Space):
         return self.compiled_at(self._kernel_origin)
 
     def compiled_at(self, origin: Floats | None) -> DifferenceData:
-        """Return the compiled space in the caller's frame moved to ``origin`` (dim,), or not."""
+        """
+        Return the compiled space, its coordinates along the caller's axes from ``origin``.
+
+        ``origin`` (dim,) is a point of the caller's frame; None keeps the caller's own origin.
+        """
         removed = UnionSpace(*self.removed)
         return DifferenceData(self.base.compiled_at(origin), removed.compiled_at(origin))
 
@@ -97,7 +101,11 @@ class DifferenceSpace(Space):
 
     @property
     def typical_clearance(self) -> float:
-        """Typical clearance of the base, less for each removed space, in the caller's units."""
+        """
+        Estimate of the mean clearance, in the caller's units.
+
+        It is that of the base, over the dim-th root of 1 plus the number of removed spaces.
+        """
         of_base = self.base.typical_clearance * self.base.scale
         return of_base / (1.0 + len(self.removed)) ** (1.0 / self.dim)
 
@@ -140,7 +148,11 @@ def _first_exit(difference, x, u, t, horizon):
 @first_entry.register(DifferenceData)
 @kernel
 def _first_entry(difference, x, u, t):
-    """Alternate entries into the base and exits from removed spaces, until neither advances."""
+    """
+    Return the first parameter from ``t`` on at which the line touches the difference, or inf.
+
+    Entries into the base and exits from the removed spaces alternate until neither advances.
+    """
     s = first_entry(difference.base, x, u, t)
     while s < math.inf:
         out = first_exit(difference.removed, x, u, s, math.inf)
@@ -153,7 +165,7 @@ def _first_entry(difference, x, u, t):
 @chord.register(DifferenceData)
 @kernel
 def _chord(difference, x, u, back):
-    """Intersect the chord in the base with the gap between the removed spaces."""
+    """Return the chord in the base, cut to the gap between removed spaces around ``x``."""
     lower, upper = chord(difference.base, x, u, back)
     first, last = gap(difference.removed, x, u, back)
     return max(lower, first), min(upper, last)
@@ -169,7 +181,11 @@ def _component(difference, x):
 @add_crossings.register(DifferenceData)
 @kernel
 def _add_crossings(difference, curve, end, crossings, n):
-    """Append the parameters where a curve meets any surface of both; return their number."""
+    """
+    Append to ``crossings``, from index ``n``, where a curve meets a surface of either part.
+
+    Return ``n`` plus the number of these parameters, also of those that do not fit.
+    """
     n = add_crossings(difference.base, curve, end, crossings, n)
     return add_crossings(difference.removed, curve, end, crossings, n)
 
@@ -177,5 +193,5 @@ def _add_crossings(difference, curve, end, crossings, n):
 @max_gap_of.register(DifferenceData)
 @kernel
 def _max_gap_of(difference):
-    """Return the longest gap that closes in the base."""
+    """Return the length up to which gaps between members of the base count as free."""
     return max_gap_of(difference.base)

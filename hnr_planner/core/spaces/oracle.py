@@ -1,4 +1,4 @@
-"""A space defined by a function of the user that tests points, or returns chords."""
+"""A space defined by a function of the user, which either tests points or returns chords."""
 
 from collections.abc import Callable
 import math
@@ -32,11 +32,12 @@ class OracleSpace(Space):
     Parameters
     ----------
     contains : callable
-        Returns whether a point (dim,), which it must not change, is free.
+        Function that returns True or False: whether a point (dim,) in the caller's frame, which it
+        must not change, is free.
     lower, upper : (dim,)
         Corners of a box: nothing outside is free.
     resolution : float
-        Distance between two points of a line that are tested, above 0.
+        Distance between two consecutive points of a line that are tested, above 0.
 
     Raises
     ------
@@ -76,8 +77,9 @@ class OracleSpace(Space):
         Parameters
         ----------
         chord : callable
-            Of a point (dim,) and a direction (dim,): the parameter above 0, in units of the
-            direction, at which the ray leaves the space; 0 where the point is not free.
+            Function of a point (dim,) and a direction (dim,) that returns the parameter above 0,
+            in units of the length of the direction, at which the ray leaves the space; 0 where the
+            point is not free.
         lower, upper : (dim,)
             Corners of a box: nothing outside is free.
         resolution : float
@@ -116,11 +118,11 @@ class OracleSpace(Space):
         self.data = self.compiled_at(self._kernel_origin)
 
     def __getstate__(self) -> dict[str, Any]:
-        """Keep the arguments: what is compiled holds addresses of this process."""
+        """Keep the arguments only: compiled functions hold addresses of this process."""
         return {'arguments': self._arguments}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
-        """Build the space again."""
+        """Build the space again from the pickled arguments."""
         self._build(*state['arguments'])
 
     def __repr__(self) -> str:
@@ -133,7 +135,11 @@ class OracleSpace(Space):
         return self._compiled.data.lower.copy(), self._compiled.data.upper.copy()
 
     def compiled_at(self, origin: Floats | None) -> OracleData:
-        """Return the compiled space in the caller's frame moved to ``origin`` (dim,), or not."""
+        """
+        Return the compiled space, its coordinates along the caller's axes from ``origin``.
+
+        ``origin`` (dim,) is a point of the caller's frame; None keeps the caller's own origin.
+        """
         data = self._compiled.data
         if origin is None:
             return data
@@ -156,7 +162,11 @@ def _check_function(contains: Any, point: Floats) -> None:
 
 
 def _membership(chord: Any) -> Callable[[Floats], bool]:
-    """Return the test of membership of a chord function: a chord above 0 along the first axis."""
+    """
+    Return a function that tests whether the chord along the first axis is above 0 at a point.
+
+    It is compiled by numba if ``chord`` is.
+    """
     if not callable(chord):
         raise SpaceError(f'chord must be a function, got {chord!r}')
 

@@ -1,8 +1,8 @@
 """
 Compiled spaces that call functions of the user: chords by search, or from a function.
 
-Where only points can be tested, a line is searched: a point is tested at every ``resolution``
-along the line, and a change of the result is located by bisection.
+A space without a chord function is searched along a line: a point is tested at every
+``resolution`` along the line, and a change of the result is located by bisection.
 """
 
 from collections.abc import Callable
@@ -31,20 +31,21 @@ class OracleData(NamedTuple):
     Attributes
     ----------
     lower, upper : (dim,)
-        Bounds: functions are not called for points outside.
+        Bounds, kernel frame: no point outside is free, and membership is not asked there.
     origin : (dim,)
         Origin of the kernel frame in the frame of the functions.
     resolution : float
-        Distance between two points of a line that are tested.
+        Distance between two consecutive points of a line that are tested.
     closeness : float
         Distance within which the end of a chord is located.
     membership : int
         Address of the function of a point that returns whether it is free.
     chord : int
-        Address of the function of a point and a direction that returns how far the line is free;
-        0 for none.
+        Address of the function of a point and a direction that returns the parameter at which the
+        ray from that point leaves the space; 0 if there is no such function.
     motion : int
-        Address of the function of two points that returns whether the segment is free; 0 for none.
+        Address of the function of two points that returns whether the segment between them is
+        free; 0 if there is no such function.
 
     """
 
@@ -60,7 +61,7 @@ class OracleData(NamedTuple):
 
 class OracleFunctions:
     """
-    Functions that kernels call by address; keep it for as long as its ``data`` is used.
+    Functions that kernels call by address; keep this object for as long as its ``data`` is used.
 
     Parameters
     ----------
@@ -69,11 +70,13 @@ class OracleFunctions:
     resolution, closeness : float
         As in ``OracleData``.
     contains : callable
-        Of a point (dim,): whether it is free. Compiled by numba or not, like the others.
+        Function of a point (dim,) that returns whether it is free. Each of the three functions may
+        be compiled by numba or not.
     chord : callable or None
-        Of a point (dim,) and a direction (dim,): the parameter at which the ray leaves the space.
+        Function of a point (dim,) and a direction (dim,) that returns the parameter at which the
+        ray leaves the space.
     is_motion_valid : callable or None
-        Of two points (dim,): whether the segment between them is free.
+        Function of two points (dim,) that returns whether the segment between them is free.
 
     Attributes
     ----------
@@ -114,7 +117,7 @@ def _contains(oracle, x):
 @first_exit.register(OracleData)
 @kernel
 def _first_exit(oracle, x, u, t, horizon):
-    """Return the exit of the line from the chord function, or else by search."""
+    """Return the first exit from ``t`` on: from the chord function, or else by search."""
     work = np.empty(len(x) + 1)
     if not _is_in(oracle, x, u, t, work):
         return t
@@ -133,7 +136,7 @@ def _first_exit(oracle, x, u, t, horizon):
 @first_entry.register(OracleData)
 @kernel
 def _first_entry(oracle, x, u, t):
-    """Search the line within the bounds for a point that is free."""
+    """Return the first parameter from ``t`` on at which a search finds a free point, or inf."""
     work = np.empty(len(x) + 1)
     if _is_in(oracle, x, u, t, work):
         return t
@@ -150,7 +153,12 @@ def _first_entry(oracle, x, u, t):
 @segment_is_free.register(OracleData)
 @kernel
 def _segment_is_free(oracle, a, b):
-    """Call the function of two points where there is one; else compare with the chord."""
+    """
+    Return whether the segment from ``a`` to ``b`` is free.
+
+    The function of two points is called if there is one; otherwise both ends have to be free, and
+    the exit of the line from ``a`` has to lie beyond ``b``.
+    """
     if oracle.motion != 0:
         n = len(a)
         ends, answer = np.empty(2 * n), np.empty(1)
@@ -167,7 +175,11 @@ def _segment_is_free(oracle, a, b):
 
 @kernel
 def _bisect(oracle, x, u, before, after, work):
-    """Bisect between ``before`` and ``after``; return a parameter just after the change."""
+    """
+    Return a parameter just after the change of membership between ``before`` and ``after``.
+
+    The change is located by bisection, to a distance of ``closeness``.
+    """
     was_in = _is_in(oracle, x, u, before, work)
     closeness = oracle.closeness / norm(u)
     while after - before > closeness:

@@ -1,9 +1,9 @@
 """
 Primitives of a compiled space: the kernels from which walks and planners are built.
 
-A compiled space is a NamedTuple of arrays whose type registers a kernel for each primitive. Those
-with a body here are defaults in terms of the others; a type overrides them where it can compute
-them faster or more exactly.
+A compiled space is a NamedTuple of arrays whose type registers a kernel for each primitive.
+Primitives that have a body here have a default in terms of the others; a type registers its own
+kernel where that is faster or more exact.
 
 ``first_exit`` refers to the open set and ``first_entry`` to its closure: the spaces that a
 difference removes are closed, so that free space is open.
@@ -80,7 +80,8 @@ def chord(space: CompiledSpace, x: Floats, u: Floats, back: Floats) -> tuple[flo
     """
     Return the largest open interval of ``x + s u`` around ``s = 0`` that is free.
 
-    ``x`` has to be free (``chord_or_empty`` checks that), and ``back`` has to be ``-u``.
+    The interval is (lower, upper) in parameters s. ``x`` has to be free (``chord_or_empty`` checks
+    that), and ``back`` has to be ``-u``.
     """
     return -first_exit(space, x, back, 0.0, math.inf), first_exit(space, x, u, 0.0, math.inf)
 
@@ -124,10 +125,11 @@ def flood_path(
     space: CompiledSpace, start: Floats, goal: Floats, goal_radius: float, margin: float
 ) -> Floats:
     """
-    Return a free path (m, dim) from ``start`` into the goal region, wherever there is one.
+    Return a free path (m, dim) from ``start`` into the goal region; (0, dim) if there is none.
 
-    It may be long. It ends at ``goal`` for a ``goal_radius`` of 0, else at a point ``margin`` or
-    more inside the space. (0, dim) where there is none, or the space has no flood fill.
+    The path need not be short. It ends at ``goal`` for a ``goal_radius`` of 0, else at a point
+    within ``goal_radius`` of ``goal`` and at least ``margin`` inside free space. The
+    default, for a space without a flood fill, is (0, dim). All lengths are in the kernel frame.
     """
     return np.empty((0, len(start)))
 
@@ -164,7 +166,11 @@ def chord_or_empty(space, x, u):
 
 @kernel
 def first_blocked_segment(space, points):
-    """Return the index of the first segment of a path (m, dim) that is not free; -1 for none."""
+    """
+    Return the index of the first segment of a path (m, dim) that is not free; -1 for none.
+
+    Segment k leads from point k to point k + 1. A path of one point has no segment.
+    """
     for k in range(len(points) - 1):
         if not segment_is_free(space, points[k], points[k + 1]):
             return k

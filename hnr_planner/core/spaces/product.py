@@ -1,4 +1,8 @@
-"""The product of spaces, such as position and velocity."""
+"""
+The product of spaces: each factor limits its own consecutive coordinates of a point.
+
+For example, the first factor limits the position of a robot, and the second its velocity.
+"""
 
 from functools import cached_property
 from itertools import pairwise
@@ -27,12 +31,12 @@ COMPONENTS_MAX = 2**31
 
 class ProductData(NamedTuple):
     """
-    A compiled product of two; a product of more is nested.
+    A compiled product of two spaces; in a product of more, ``one`` is itself a product.
 
     Attributes
     ----------
     one, other : NamedTuple
-        Compiled spaces.
+        Compiled spaces, each in its own coordinates.
     split : int
         Number of coordinates of ``one``; ``other`` has the rest.
 
@@ -50,7 +54,7 @@ class ProductSpace(Space):
     Parameters
     ----------
     *factors : Space
-        At least one; the dimension is the sum of theirs.
+        The factors, at least one; the dimension of the product is the sum of their dimensions.
 
     Raises
     ------
@@ -80,7 +84,11 @@ class ProductSpace(Space):
         return self.compiled_at(self._kernel_origin)
 
     def compiled_at(self, origin: Floats | None) -> CompiledSpace:
-        """Return the compiled product in the caller's frame moved to ``origin`` (dim,), or not."""
+        """
+        Return the compiled product, its coordinates along the caller's axes from ``origin``.
+
+        ``origin`` (dim,) is a point of the caller's frame; None keeps the caller's own origin.
+        """
         compiled = [
             factor.compiled_at(None if origin is None else origin[own])
             for factor, own in zip(self.factors, self._slices, strict=True)
@@ -102,7 +110,11 @@ class ProductSpace(Space):
         return min(factor.typical_clearance * factor.scale for factor in self.factors)
 
     def covers_box(self, lower: Floats, upper: Floats) -> bool:
-        """Return whether every factor is known to cover its coordinates of a box."""
+        """
+        Return whether every factor is known to cover its own coordinates of a box.
+
+        ``lower`` and ``upper`` (dim,) are the corners of the box.
+        """
         return all(
             factor.covers_box(lower[own], upper[own])
             for factor, own in zip(self.factors, self._slices, strict=True)
@@ -138,7 +150,7 @@ def _touches(product, x):
 @first_exit.register(ProductData)
 @kernel
 def _first_exit(product, x, u, t, horizon):
-    """Return where the line leaves the first of the two factors."""
+    """Return the first parameter from ``t`` on at which the line leaves either factor."""
     k, end = product.split, math.inf
     # The line may be a single point in one of the factors.
     if u[:k].any():
@@ -155,7 +167,7 @@ def _first_exit(product, x, u, t, horizon):
 @first_entry.register(ProductData)
 @kernel
 def _first_entry(product, x, u, t):
-    """Alternate entries into the two factors, until the line touches both."""
+    """Return the first parameter from ``t`` on at which the line touches both factors, or inf."""
     k = product.split
     moves, other_moves = u[:k].any(), u[k:].any()
     if not (moves or touches(product.one, x[:k])):
@@ -175,7 +187,7 @@ def _first_entry(product, x, u, t):
 @component.register(ProductData)
 @kernel
 def _component(product, x):
-    """Return a number for each pair of components; 0 where one of them is 0."""
+    """Return one number for the components of both factors that hold ``x``; 0 if either is 0."""
     k = product.split
     one, other = component(product.one, x[:k]), component(product.other, x[k:])
     return one + COMPONENTS_MAX * (other - 1) if one > 0 and other > 0 else 0

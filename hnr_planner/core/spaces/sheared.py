@@ -1,4 +1,4 @@
-"""A ball or a box under a shear: a set that is not convex, and its map to a convex one."""
+"""The image of a ball or a box under a shear, which need not be convex."""
 
 import math
 from typing import NamedTuple
@@ -15,7 +15,7 @@ from hnr_planner.core.spaces.space import Space
 import numpy as np
 from numpy.typing import ArrayLike
 
-#: Largest stretch or compression for which coordinates resolve the image.
+#: Largest Lipschitz constant of the shear for which coordinates resolve the image.
 STRETCH_MAX = 1e4
 #: Bound on the rounding of a coordinate mapped back, as a fraction of its terms.
 ROUNDING = 32 * 2.0**-53
@@ -30,15 +30,17 @@ class ShearedData(NamedTuple):
     Attributes
     ----------
     lower, upper : (dim,)
-        Corners of the box, or of a box around the ball.
+        Corners of the box that is the base, or of a box around the ball that is the base.
     centre : (dim,)
-        Centre of the box or the ball.
+        Centre of the base.
     radius : float
         Radius of the ball; 0 for a box.
     bend : float
-        The last coordinate is moved by this times the square of the first, from the centre.
+        The last coordinate is moved by ``bend`` times the square of the first coordinate, which
+        is counted from the centre.
     rounding : float
-        Largest rounding error of an inequality that is exactly 0.
+        Largest computed value of an inequality whose exact value is 0: a length, squared for a
+        ball.
     begin, end : (dim,)
         Corners of a box around the image, slightly larger than its bounds.
 
@@ -58,10 +60,10 @@ class ShearedSpace(Space):
     """
     The image of a ball or a box under a shear that keeps volume.
 
-    The map ``g`` moves the last coordinate by ``bend`` times the square of the first: a banana.
-    Its Jacobian has determinant 1, so that uniform points of the base go to uniform points of the
-    image, and both of its Lipschitz constants are known exactly: what the paper's Assumption 2
-    asks for.
+    The map ``g`` moves the last coordinate by ``bend`` times the square of the first, so that a
+    ball becomes a banana. Its Jacobian has determinant 1, so that uniform points of the base go to
+    uniform points of the image, and both of its Lipschitz constants are known exactly: what the
+    paper's Assumption 2 asks for.
 
     Parameters
     ----------
@@ -73,16 +75,17 @@ class ShearedSpace(Space):
     Raises
     ------
     SpaceError
-        When the base is another space, or the numbers describe no such image.
+        When the base is another space or of dimension 1, ``bend`` is not finite or stretches the
+        base too much, or the image is not resolved by floating-point numbers.
 
     Attributes
     ----------
     base : BallSpace or BoxSpace
     bend : float
     stretch : float
-        Lipschitz constant of g, the paper's L_Sigma: the least one, exactly.
+        Least Lipschitz constant of g, the paper's L_Sigma, from a closed form.
     shrink : float
-        Lipschitz constant of the inverse, the paper's L_Omega: equal to ``stretch``.
+        Least Lipschitz constant of the inverse of g, the paper's L_Omega: equal to ``stretch``.
 
     """
 
@@ -111,7 +114,11 @@ class ShearedSpace(Space):
         return f'ShearedSpace(base={self.base!r}, bend={self.bend:g})'
 
     def compiled_at(self, origin: Floats | None) -> ShearedData:
-        """Return the compiled space in the caller's frame moved to ``origin`` (dim,), or not."""
+        """
+        Return the compiled space, its coordinates along the caller's axes from ``origin``.
+
+        ``origin`` (dim,) is a point of the caller's frame; None keeps the caller's own origin.
+        """
         shift = np.zeros(self.dim) if origin is None else origin
         lower, upper = (corner - shift for corner in self.base.bounds)
         rim = AROUND * (self._upper - self._lower)
@@ -134,15 +141,15 @@ class ShearedSpace(Space):
 
     @property
     def typical_clearance(self) -> float:
-        """Typical clearance of the base, reduced by the largest compression."""
+        """Typical clearance of the base over ``shrink``."""
         return self.base.typical_clearance / self.shrink
 
     def image(self, points: ArrayLike) -> Floats:
-        """Return g of points (..., dim) of the base."""
+        """Return the images (k, dim) or (dim,) under the shear g of points of the base."""
         return self._moved(points, self.bend)
 
     def preimage(self, points: ArrayLike) -> Floats:
-        """Return the inverse of g of points (..., dim)."""
+        """Return the points (k, dim) or (dim,) that the shear g maps to ``points``."""
         return self._moved(points, -self.bend)
 
     def why_not_free(self, point: ArrayLike) -> str:
@@ -151,7 +158,7 @@ class ShearedSpace(Space):
         return f'mapped back, {reason}'
 
     def _moved(self, points: ArrayLike, bend: float) -> Floats:
-        """Return points (..., dim) under the shear by ``bend``."""
+        """Return points (k, dim) or (dim,) moved by a shear with this ``bend``, in a new array."""
         moved = check_points('points', points, self.dim)
         moved[..., -1] += bend * (moved[..., 0] - self.centre[0]) ** 2
         return moved
@@ -181,7 +188,7 @@ def _bounds(base: BallSpace | BoxSpace, bend: float) -> tuple[Floats, Floats]:
 
 def _largest_stretch(base: BallSpace | BoxSpace, bend: float) -> float:
     """
-    Return the Lipschitz constant of g, which is also the one of its inverse.
+    Return the least Lipschitz constant of g, which is also that of the inverse of g.
 
     ``g(x) - g(y) = (1 + k e_n e_1^T) (x - y)`` with ``k = bend (x_1 + y_1 - 2 c_1)``, exactly: a
     linear shear, whose largest and whose inverse's largest singular value are both
@@ -193,7 +200,11 @@ def _largest_stretch(base: BallSpace | BoxSpace, bend: float) -> float:
 
 
 def _rounding(lower: Floats, upper: Floats, radius: float, bend: float) -> float:
-    """Return the largest rounding error of an inequality at 0: a length, squared for a ball."""
+    """
+    Return the largest computed value of an inequality whose exact value is 0.
+
+    It is a length for a box, and a squared length for a ball.
+    """
     half = float(upper[0] - lower[0]) / 2.0
     size = float(np.abs([lower, upper]).max()) + abs(bend) * half**2
     return ROUNDING * size * (half if radius > 0.0 else 1.0)
@@ -202,14 +213,14 @@ def _rounding(lower: Floats, upper: Floats, radius: float, bend: float) -> float
 @contains.register(ShearedData)
 @kernel
 def _contains(sheared, x):
-    """Return whether ``x`` is inside every inequality."""
+    """Return whether ``x`` (dim,) satisfies every inequality strictly."""
     return _holds(sheared, x, False)
 
 
 @touches.register(ShearedData)
 @kernel
 def _touches(sheared, x):
-    """Return whether ``x`` is inside or on the boundary of every inequality."""
+    """Return whether ``x`` (dim,) satisfies every inequality, or is on its boundary."""
     return _holds(sheared, x, True)
 
 
@@ -227,7 +238,7 @@ def _holds(sheared, x, closed):
 @first_exit.register(ShearedData)
 @kernel
 def _first_exit(sheared, x, u, t, horizon):
-    """Return where the first inequality fails."""
+    """Return the first parameter from ``t`` on at which an inequality fails."""
     _, last = box_span(sheared.begin, sheared.end, x, u)
     if t >= last:
         return t
@@ -243,7 +254,11 @@ def _first_exit(sheared, x, u, t, horizon):
 @first_entry.register(ShearedData)
 @kernel
 def _first_entry(sheared, x, u, t):
-    """Advance to where a violated inequality holds, until all hold."""
+    """
+    Return the first parameter from ``t`` on at which all inequalities hold; inf for none.
+
+    The parameter advances to where a violated inequality holds, until all of them hold.
+    """
     first, last = box_span(sheared.begin, sheared.end, x, u)
     coefficients, rounding = np.empty(5), sheared.rounding
     s, k, held = max(t, first), 0, 0
@@ -269,8 +284,8 @@ def _write(sheared, k, x, u, coefficients):
     """
     Write inequality ``k`` along ``x + s u`` as a polynomial in s, and return its degree.
 
-    The polynomial is below 0 inside. Mapped back, the line is a parabola: only its last coordinate
-    is not linear.
+    The coefficients are written with the constant one first. The polynomial is below 0 inside. The
+    inverse of g maps the line to a parabola, of which only the last coordinate is not linear.
     """
     c, n = coefficients, len(x)
     aside = x[0] - sheared.centre[0]

@@ -1,11 +1,12 @@
 """
 The base class of spaces: open, bounded sets of free points, with membership and chords.
 
-Everything else is built on these two. A Hit-and-Run step draws on a chord; a motion is free when
-the chord reaches beyond its end. The rules at the boundary are the same for every space:
+Walks and planners are built on membership and chords. A Hit-and-Run step draws on a chord; a
+motion is free when the chord reaches beyond its end. The rules at the boundary are the same for
+every space:
 
 - obstacles are closed, free space is open: a point that touches an obstacle is not free;
-- ``lower < 0 < upper`` exactly when the point is free, otherwise the chord is ``Chord(0, 0)``;
+- a chord has ``lower < 0 < upper`` exactly when its point is free; else it is ``Chord(0, 0)``;
 - a motion that has to stop at a chord's end stops ``margin`` before it.
 """
 
@@ -43,7 +44,11 @@ _FUNCTIONS_LOCK = threading.Lock()
 
 
 class Chord(NamedTuple):
-    """Largest free interval of the line ``point + t direction`` around ``t = 0``."""
+    """
+    Largest free interval (lower, upper) of ``point + t direction`` around ``t = 0``.
+
+    The ends are parameters t. Both are 0 where the point is not free.
+    """
 
     lower: float
     upper: float
@@ -59,8 +64,8 @@ class Space(ABC):
     convert points at the boundary of the package.
 
     A subclass in plain Python sets ``dim`` and overrides ``bounds``, ``contains`` and ``chord``,
-    and ``is_motion_valid`` where that differs from a test of the chord; kernels then call back
-    these methods, from many threads, but one at a time.
+    and ``is_motion_valid`` if the chord from the start does not decide whether a motion is free.
+    Kernels then call these methods, from many threads, but one at a time.
 
     Attributes
     ----------
@@ -83,14 +88,14 @@ class Space(ABC):
 
     @cached_property
     def data(self) -> Any:
-        """The compiled space of a subclass in Python: kernels call its methods."""
+        """The compiled space of a subclass in plain Python, whose kernels call the methods."""
         # Kernels call by address: a second set of functions must not replace the first.
         with _FUNCTIONS_LOCK:
             return self._functions.data
 
     @cached_property
     def _functions(self) -> OracleFunctions:
-        """The methods of a subclass in Python as functions that kernels call."""
+        """The methods of a subclass in plain Python, as functions that kernels call by address."""
         kind = type(self)
         if kind.contains is Space.contains or kind.chord is Space.chord:
             raise SpaceError(
@@ -126,22 +131,23 @@ class Space(ABC):
 
     def compiled_at(self, origin: Floats | None) -> CompiledSpace:
         """
-        Return the compiled space in the caller's frame moved to another origin.
+        Return the compiled space, its coordinates along the caller's axes from ``origin``.
 
-        ``origin`` (dim,) is that origin in the caller's frame; None for no move.
+        ``origin`` (dim,) is a point of the caller's frame; None keeps the caller's own origin.
         """
         return shifted(self.data, self._kernel_origin, origin)
 
     @property
     def compiled(self) -> CompiledSpace:
-        """The compiled space in the caller's frame, of which composed spaces are made."""
+        """The compiled space in the caller's frame."""
         return self.compiled_at(None)
 
     def covers_box(self, lower: Floats, upper: Floats) -> bool:
         """
         Return whether the closure is known to contain the box between two corners (dim,).
 
-        False where that is unknown: a space overrides this where it can be computed.
+        The corners are in the caller's frame. False also means that the answer is unknown, as it
+        is by default: a space overrides this method if it can compute the answer.
         """
         return False
 
@@ -163,8 +169,8 @@ class Space(ABC):
         """
         Distance before a chord's end at which a motion stops, kernel frame.
 
-        A fraction ``MARGIN`` of the bounds' diagonal, but never less than the caller's coordinates
-        resolve.
+        A fraction ``MARGIN`` of the bounds' diagonal; in a space far from the origin at least
+        ``MARGIN_ROUNDINGS`` roundings of the largest coordinate of the bounds.
         """
         lower, upper = self.kernel_bounds
         margin = MARGIN * float(np.linalg.norm(upper - lower))
@@ -182,19 +188,27 @@ class Space(ABC):
         """
         Rough mean distance from a free point to the boundary, kernel frame.
 
-        The default is that of a cube whose side is the shortest of the bounds.
+        The default is the mean distance in a cube whose side is the shortest side of the bounds.
         """
         lower, upper = self.kernel_bounds
         return float((upper - lower).min()) / (2.0 * (self.dim + 1))
 
     @property
     def walls(self) -> NDArray[Any] | None:
-        """Distance field (rows, cols) for kernels that compute clearances; None without one."""
+        """
+        Distance field (rows, cols) of a grid [cells], for clearances; None for other spaces.
+
+        It holds the Chebyshev distance from each cell to the nearest occupied cell.
+        """
         return None
 
     @property
     def island_points(self) -> Floats | None:
-        """A point (k, dim) in each obstacle with free space all around, kernel frame; or None."""
+        """
+        One point (k, dim) inside each obstacle that free space surrounds, kernel frame.
+
+        None for a space that does not know its obstacles.
+        """
         return None
 
     def to_kernel(self, points: Floats) -> Floats:
@@ -214,14 +228,19 @@ class Space(ABC):
         return np.array(directions, order='C')
 
     def why_not_free(self, point: ArrayLike) -> str:
-        """Return the reason why ``point`` (dim,) is not free, to follow the word 'is'."""
+        """
+        Return the reason why a ``point`` (dim,) that is not free is not, to follow the word 'is'.
+
+        The result means nothing for a free point. The point is in the caller's frame.
+        """
         return 'not in the space'
 
     def region_reachable(self, start: ArrayLike, goal: ArrayLike, radius: float) -> bool:
         """
         Return whether a path leads from ``start`` (dim,) to within ``radius`` of ``goal`` (dim,).
 
-        True where that is unknown.
+        True also means that the answer is unknown, as it is by default. Points and radius are in
+        the caller's frame and units.
         """
         return True
 
@@ -273,11 +292,15 @@ class Space(ABC):
         return bool(segment_is_free(self.data, a, b))
 
     def first_blocked_segment(self, path: ArrayLike) -> int | None:
-        """Return the index of the first segment of a path (m, dim) that is not free, or None."""
+        """
+        Return the index of the first segment of a path (m, dim) that is not free, or None.
+
+        Segment k leads from point k to point k + 1. The path is in the caller's frame.
+        """
         points = self.to_kernel(check_points('path', path, self.dim))
         k = first_blocked_segment(self.data, points)
         return None if k < 0 else int(k)
 
     def is_path_free(self, path: Floats) -> bool:
-        """Return whether every segment of a path (m, dim) of finite numbers is free."""
+        """Return whether all segments of a finite path (m, dim), caller's frame, are free."""
         return bool(first_blocked_segment(self.data, self.to_kernel(path)) < 0)

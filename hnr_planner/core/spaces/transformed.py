@@ -1,4 +1,8 @@
-"""A compiled space in another frame: an affine map takes lines to lines, parameters unchanged."""
+"""
+A compiled space in another frame, from which an affine map leads to its own frame.
+
+An affine map takes lines to lines, with unchanged parameters: so chords need no conversion.
+"""
 
 from typing import Any, NamedTuple
 
@@ -17,16 +21,16 @@ import numpy as np
 
 class TransformedData(NamedTuple):
     """
-    A compiled space in another frame: a point ``x`` of that frame is ``matrix x + offset``.
+    A compiled space in another frame: ``x`` there is ``matrix x + offset`` in its own frame.
 
     Attributes
     ----------
     space : NamedTuple
         The compiled space, in its own frame.
     matrix : (dim, dim)
-        Invertible.
+        Invertible matrix from the other frame to the own frame of the space.
     offset : (dim,)
-        Image of the other frame's origin.
+        The other frame's origin, in the own frame of the space.
 
     """
 
@@ -36,7 +40,11 @@ class TransformedData(NamedTuple):
 
 
 def shifted(space: CompiledSpace, origin: Floats | None, new: Floats | None) -> CompiledSpace:
-    """Return a compiled space with its origin moved from ``origin`` to ``new`` (dim,)."""
+    """
+    Return a compiled space with its origin moved from ``origin`` to ``new`` (dim,).
+
+    Both are points of one frame, with parallel axes; None is its zero point.
+    """
     if origin is None and new is None:
         return space
     offset = (0.0 if new is None else new) - (0.0 if origin is None else origin)
@@ -47,21 +55,21 @@ def shifted(space: CompiledSpace, origin: Floats | None, new: Floats | None) -> 
 @contains.register(TransformedData)
 @kernel
 def _contains(transformed, x):
-    """Return whether the image of ``x`` is free."""
+    """Return whether ``x`` (dim,), converted to the frame of the space, is free."""
     return contains(transformed.space, _point(transformed, x))
 
 
 @touches.register(TransformedData)
 @kernel
 def _touches(transformed, x):
-    """Return whether the image of ``x`` is in the closure."""
+    """Return whether ``x`` (dim,), converted to the frame of the space, is in its closure."""
     return touches(transformed.space, _point(transformed, x))
 
 
 @first_exit.register(TransformedData)
 @kernel
 def _first_exit(transformed, x, u, t, horizon):
-    """Return where the image of the line leaves the space."""
+    """Return the first parameter from ``t`` on at which the converted line leaves the space."""
     return first_exit(
         transformed.space, _point(transformed, x), _product(transformed.matrix, u), t, horizon
     )
@@ -70,7 +78,7 @@ def _first_exit(transformed, x, u, t, horizon):
 @first_entry.register(TransformedData)
 @kernel
 def _first_entry(transformed, x, u, t):
-    """Return where the image of the line touches the space."""
+    """Return the first parameter from ``t`` on at which the converted line touches the space."""
     return first_entry(
         transformed.space, _point(transformed, x), _product(transformed.matrix, u), t
     )
@@ -79,13 +87,13 @@ def _first_entry(transformed, x, u, t):
 @component.register(TransformedData)
 @kernel
 def _component(transformed, x):
-    """Return the component that holds the image of ``x``."""
+    """Return the component, from 1, that holds ``x`` (dim,); 0 where ``x`` is not free."""
     return component(transformed.space, _point(transformed, x))
 
 
 @kernel
 def _point(transformed, x):
-    """Return the image (dim,) of a point ``x`` (dim,)."""
+    """Return a point ``x`` (dim,) of the other frame in the own frame of the space."""
     y = _product(transformed.matrix, x)
     for i in range(len(y)):
         y[i] += transformed.offset[i]

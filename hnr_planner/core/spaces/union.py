@@ -1,4 +1,4 @@
-"""The union of spaces."""
+"""The union of spaces: the points that are free in at least one member."""
 
 from collections.abc import Iterable
 from functools import cached_property, reduce
@@ -30,14 +30,14 @@ from numpy.typing import ArrayLike
 
 class UnionData(NamedTuple):
     """
-    A compiled union of two; a union of more is nested.
+    A compiled union of two spaces; in a union of more, ``one`` is itself a compiled union.
 
     Attributes
     ----------
     one, other : NamedTuple
         Compiled spaces in one frame.
     max_gap : float
-        Longest gap between the two that a ray can cross.
+        Longest gap between the two that counts as free: a ray passes over it.
 
     """
 
@@ -48,20 +48,20 @@ class UnionData(NamedTuple):
 
 class UnionSpace(Space):
     """
-    The points of any of its members.
+    The points that are free in at least one member.
 
-    Members that abut are joined: gaps up to 1e-9 of the diagonal are closed, so that a ray passes
-    from a box that ends at .3 to one that begins at .1 + .2.
+    Members that abut are joined: gaps up to 1e-9 of the bounds' diagonal are closed, so a ray
+    passes from a box that ends at .3 to one that begins at .1 + .2.
 
     Parameters
     ----------
     *members : Space
-        At least one; all of one dimension, in one frame.
+        The members, at least one; all of the same dimension, in the same frame.
 
     Raises
     ------
     SpaceError
-        When the members make no union.
+        When there is no member, one is not a space, or the dimensions differ.
 
     Attributes
     ----------
@@ -95,7 +95,11 @@ class UnionSpace(Space):
         return float(np.mean([member.typical_clearance * member.scale for member in self.members]))
 
     def compiled_at(self, origin: Floats | None) -> CompiledSpace:
-        """Return the compiled union in the caller's frame moved to ``origin`` (dim,), or not."""
+        """
+        Return the compiled union, its coordinates along the caller's axes from ``origin``.
+
+        ``origin`` (dim,) is a point of the caller's frame; None keeps the caller's own origin.
+        """
         return _joined(self._leaves(origin), self.margin)
 
     def _leaves(self, origin: Floats | None) -> Iterable[CompiledSpace]:
@@ -132,14 +136,14 @@ first_exit_on_curve.register(UnionData)(first_exit_between_surfaces)
 @contains.register(UnionData)
 @kernel
 def _contains(union, x):
-    """Return whether one of the two contains ``x``."""
+    """Return whether at least one of the two spaces contains ``x`` (dim,)."""
     return contains(union.one, x) or contains(union.other, x)
 
 
 @touches.register(UnionData)
 @kernel
 def _touches(union, x):
-    """Return whether the closure of one of the two contains ``x``."""
+    """Return whether the closure of at least one of the two spaces contains ``x`` (dim,)."""
     return touches(union.one, x) or touches(union.other, x)
 
 
@@ -166,14 +170,18 @@ def _first_exit(union, x, u, t, horizon):
 @first_entry.register(UnionData)
 @kernel
 def _first_entry(union, x, u, t):
-    """Return where the line touches the first of the two."""
+    """Return the first parameter from ``t`` on at which the line touches either space."""
     return min(first_entry(union.one, x, u, t), first_entry(union.other, x, u, t))
 
 
 @add_crossings.register(UnionData)
 @kernel
 def _add_crossings(union, curve, end, crossings, n):
-    """Append the parameters where a curve meets a surface of either; return their number."""
+    """
+    Append to ``crossings``, from index ``n``, where a curve meets a surface of either part.
+
+    Return ``n`` plus the number of these parameters, also of those that do not fit.
+    """
     n = add_crossings(union.one, curve, end, crossings, n)
     return add_crossings(union.other, curve, end, crossings, n)
 
@@ -181,5 +189,5 @@ def _add_crossings(union, curve, end, crossings, n):
 @max_gap_of.register(UnionData)
 @kernel
 def _max_gap_of(union):
-    """Return the longest gap that closes between the two, or in one of them."""
+    """Return the length up to which gaps between or within the two spaces count as free."""
     return max(union.max_gap, max(max_gap_of(union.one), max_gap_of(union.other)))

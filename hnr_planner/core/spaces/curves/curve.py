@@ -2,10 +2,11 @@
 Curves that a robot follows, and their first exit from a space.
 
 Under constant controls a robot moves along a parabola or an arc. Each coordinate of such a curve
-is a function of one parameter for which everything that contact needs has a closed form: its
-value, its turning points (where the derivative is 0), and where it reaches a value before the next
-one. So the first contact with a boundary is found as a root, never by small steps. A compiled
-space that supports it registers a kernel for ``first_exit_on_curve`` in the module of its space.
+is a function of one parameter with closed forms for all that the search for a contact needs: its
+value, its turning points (where the derivative is 0), and the parameter at which it reaches a
+given value before its next turning point. So the first contact with a boundary is found as a root,
+never by small steps. A compiled space that supports curves registers a kernel for
+``first_exit_on_curve`` in the module of its space.
 """
 
 import math
@@ -44,21 +45,33 @@ def at(f: Any, t: float) -> float:
 @dispatched
 @kernel
 def turn(f: Any, t: float) -> float:
-    """Return the first turning point > ``t`` of a coordinate; inf for none."""
+    """
+    Return the first parameter above ``t`` at which a coordinate turns; inf for none.
+
+    It turns where its derivative is 0.
+    """
     raise NotImplementedError
 
 
 @dispatched
 @kernel
 def reach(f: Any, value: float, t: float) -> float:
-    """Return where a coordinate is ``value``, before its next turning point; inf for none."""
+    """
+    Return a parameter at which a coordinate is ``value``; inf, or one out of range, for none.
+
+    It is the first one from ``t`` on, if there is one up to the next turning point after ``t``.
+    """
     raise NotImplementedError
 
 
 @dispatched
 @kernel
 def first_exit_on_curve(space: CompiledSpace, curve: Any, end: float) -> float:
-    """Return the first parameter in [0, ``end``] at which a curve is not free; inf for none."""
+    """
+    Return the first parameter in [0, ``end``] at which a curve is not free; inf for none.
+
+    ``space`` and ``curve`` are in the same frame.
+    """
     raise NotImplementedError
 
 
@@ -78,9 +91,9 @@ class Parabola(NamedTuple):
 
 class Arc(NamedTuple):
     """
-    The arc from ``position`` (2,) at ``heading`` [rad], as a function of its length.
+    The arc from ``position`` (2,) at ``heading`` [rad], as a function of the length along it.
 
-    ``curvature`` is the inverse of its radius, above 0 to the left.
+    ``curvature`` is the inverse of the radius, above 0 for a turn to the left, 0 for a line.
     """
 
     position: Floats
@@ -97,7 +110,11 @@ class Quadratic(NamedTuple):
 
 
 class Winding(NamedTuple):
-    """``start`` and the integral of ``cos(angle + curvature s)``: a coordinate of an arc."""
+    """
+    The function ``start`` + integral of ``cos(angle + curvature s)``: a coordinate of an arc.
+
+    The integral runs from 0 to the parameter, the length along the arc.
+    """
 
     start: float
     angle: float
@@ -114,14 +131,14 @@ def _parabola_coordinate(curve, i):
 @coordinate.register(Arc)
 @kernel
 def _arc_coordinate(curve, i):
-    """Return coordinate ``i`` of an arc: y is x for a heading turned by a quarter circle."""
+    """Return coordinate ``i`` of an arc: 0 for x, 1 for y, with the heading turned by -pi / 2."""
     return Winding(curve.position[i], curve.heading - i * (math.pi / 2.0), curve.curvature)
 
 
 @along.register(Parabola)
 @kernel
 def _parabola_along(curve, normal):
-    """Project the three vectors of a parabola on ``normal``."""
+    """Return the coordinate of a parabola along ``normal`` (dim,), a quadratic function."""
     x, v, a = 0.0, 0.0, 0.0
     for i in range(len(normal)):
         x += normal[i] * curve.position[i]
@@ -156,7 +173,7 @@ def _quadratic_turn(f, t):
 @reach.register(Quadratic)
 @kernel
 def _quadratic_reach(f, value, t):
-    """Solve the quadratic equation for the first parameter from ``t`` on, without cancellation."""
+    """Return the root of the quadratic equation ahead of ``t``, computed without cancellation."""
     slope, away = f.slope + f.change * t, value - _quadratic_at(f, t)
     if away == 0.0:
         return t
@@ -169,7 +186,12 @@ def _quadratic_reach(f, value, t):
 @at.register(Winding)
 @kernel
 def _winding_at(f, s):
-    """Evaluate by the arc's chord: length ``s sin(h) / h`` at the mean angle, h half the turn."""
+    """
+    Return the value at ``s``, from the straight chord of the arc.
+
+    With h half of the angle turned up to ``s``, the chord is ``s sin(h) / h`` long, at the mean
+    angle.
+    """
     half = f.curvature * s / 2.0
     shrink = math.sin(half) / half if half != 0.0 else 1.0
     return f.start + s * shrink * math.cos(f.angle + half)
@@ -191,7 +213,11 @@ def _winding_turn(f, s):
 @reach.register(Winding)
 @kernel
 def _winding_reach(f, value, s):
-    """Solve a quadratic for tan(h), where h is half the angle turned from ``s`` on."""
+    """
+    Return where an arc's coordinate is ``value``, ahead of ``s``; inf for nowhere.
+
+    A quadratic equation is solved for tan(h), where h is half of the angle turned from ``s`` on.
+    """
     angle, away = f.angle + f.curvature * s, value - _winding_at(f, s)
     if away == 0.0:
         return s

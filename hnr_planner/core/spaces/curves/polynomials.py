@@ -18,7 +18,7 @@ HALVINGS = 80
 
 @kernel
 def value(coefficients, s):
-    """Evaluate at ``s`` the polynomial with these coefficients, the constant one first."""
+    """Return the value at ``s`` of a polynomial; its constant coefficient comes first."""
     total = 0.0
     for k in range(len(coefficients) - 1, -1, -1):
         total = total * s + coefficients[k]
@@ -28,11 +28,11 @@ def value(coefficients, s):
 @kernel
 def next_change(coefficients, first, last, closed, rounding):
     """
-    Return the first parameter after ``first`` at which the line leaves or enters; inf for none.
+    Return the first parameter in (``first``, ``last``] of a change between inside and outside.
 
-    The line is inside where the polynomial is below 0, and also where it is 0 when ``closed``. The
-    parameter is at most ``last``, and the first number on the other side. A turning point whose
-    value is within ``rounding`` of 0 touches 0.
+    A parameter is inside where the polynomial is below 0, and also where it is 0 when ``closed``.
+    The result is the first number after the change, and inf if there is no change. A turning point
+    whose value is within ``rounding`` of 0 counts as 0, and so may be a change.
     """
     order = len(coefficients) - 1
     derivative, turns, n_turns = np.empty(order + 1), np.empty(order), 0
@@ -58,7 +58,11 @@ def next_change(coefficients, first, last, closed, rounding):
 
 @kernel
 def _changes(coefficients, first, last, turns, n_turns):
-    """Replace the turning points of a polynomial by its sign changes; return their number."""
+    """
+    Replace turning points of a polynomial by its sign changes; return the number of changes.
+
+    ``turns`` holds ``n_turns`` turning points between ``first`` and ``last``, in order.
+    """
     before, n = first, 0
     for k in range(n_turns + 1):
         after = turns[k] if k < n_turns else last
@@ -71,7 +75,7 @@ def _changes(coefficients, first, last, turns, n_turns):
 
 @kernel
 def _change(coefficients, before, after, closed):
-    """Bisect for the only change between two parameters; return the number after it."""
+    """Return the first number after the only change between two parameters, by bisection."""
     was_in = _is_in(coefficients, before, closed)
     for _ in range(HALVINGS):
         middle = before + (after - before) / 2.0

@@ -6,8 +6,9 @@ crossings are computed as roots and sorted, and between two of them one point in
 tested. A space composed of such spaces has the surfaces of all its members. A curve that only
 touches a surface, without crossing it, is not stopped by it.
 
-A compiled space registers ``add_crossings``, ``max_gap_of`` where gaps close in it, and
-``first_exit_between_surfaces`` for ``first_exit_on_curve``.
+A compiled space registers its kernel for ``add_crossings``, one for ``max_gap_of`` if it counts
+short gaps between its members as free, and ``first_exit_between_surfaces`` for
+``first_exit_on_curve``.
 """
 
 import math
@@ -42,13 +43,21 @@ def add_crossings(space: CompiledSpace, curve: Any, end: float, crossings: Float
 @dispatched
 @kernel
 def max_gap_of(space: CompiledSpace) -> float:
-    """Return the length of the longest gap between two members that a curve can cross."""
+    """
+    Return the length up to which gaps between two members of ``space`` count as free.
+
+    It is 0 for a space that closes no gaps.
+    """
     return 0.0
 
 
 @kernel
 def first_exit_between_surfaces(space, curve, end):
-    """Return the first crossing after which the curve is not free; see ``first_exit_on_curve``."""
+    """
+    Return the first crossing after which the curve is not free, as ``first_exit_on_curve``.
+
+    It is 0 where the curve starts outside, and inf where it is free up to ``end``.
+    """
     crossings = np.empty(INITIAL_CAPACITY)
     n = add_crossings(space, curve, end, crossings, 0)
     if n > len(crossings):
@@ -83,7 +92,11 @@ def _is_in_gap(curve, before, end, middle, max_gap):
 
 @kernel
 def add_level_crossings(f, level, end, crossings, n):
-    """Append the parameters in [0, ``end``] where ``f`` is ``level``; return their number."""
+    """
+    Append to ``crossings``, from index ``n``, parameters in [0, ``end``] where ``f`` is ``level``.
+
+    Return ``n`` plus their number, also of those that do not fit.
+    """
     t = 0.0
     while t < end:
         piece_end = min(end, turn(f, t))
@@ -101,7 +114,11 @@ def add_level_crossings(f, level, end, crossings, n):
 def add_sphere_crossings(
     curve: Any, centre: Floats, radius: float, end: float, crossings: Floats, n: int
 ) -> int:
-    """Append the parameters in [0, ``end``] where a curve meets a sphere; return their number."""
+    """
+    Append to ``crossings``, from index ``n``, where in [0, ``end``] a curve crosses a sphere.
+
+    Return ``n`` plus the number of these parameters, also of those that do not fit.
+    """
     raise NotImplementedError
 
 
@@ -131,10 +148,10 @@ def _add_sphere_crossings_of_parabola(curve, centre, radius, end, crossings, n):
 @kernel
 def _add_sphere_crossings_of_arc(curve, centre, radius, end, crossings, n):
     """
-    Append the intersections of the arc with the line on which its circle meets the sphere.
+    Append where the arc meets the line through the points in which its circle meets the sphere.
 
-    With m the centre of that circle and R its radius, |x - c|^2 = R^2 + |m - c|^2 + 2 (x - m)
-    (m - c): constant along lines across m - c.
+    With c the centre of the sphere, m the centre of that circle and R its radius, |x - c|^2 = R^2
+    + |m - c|^2 + 2 (x - m) (m - c): constant along lines across m - c.
     """
     if curve.curvature == 0.0:
         direction = np.array([math.cos(curve.heading), math.sin(curve.heading)])

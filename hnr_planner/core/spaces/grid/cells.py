@@ -1,4 +1,4 @@
-"""The values of an occupancy map: which cells are occupied, and which are unknown."""
+"""Checks of the values of an occupancy map: which cells are occupied, and which are unknown."""
 
 from typing import Any
 
@@ -21,7 +21,11 @@ def check_cells(cells: ArrayLike) -> NDArray[Any]:
 
 
 def read_blocked(blocked: ArrayLike) -> Bools:
-    """Return ``blocked`` (rows, cols) as a fresh array of truth values, or raise SpaceError."""
+    """
+    Return ``blocked`` (rows, cols) as a fresh bool array, or raise SpaceError.
+
+    The values have to be truth values, or whole numbers 0 and 1.
+    """
     values = check_cells(blocked)
     if values.dtype.kind not in 'biu' or not np.isin(values, (0, 1)).all():
         raise SpaceError(f'blocked must be true or false, got an array of {values.dtype}')
@@ -30,14 +34,16 @@ def read_blocked(blocked: ArrayLike) -> Bools:
 
 def read_occupancy(data: ArrayLike, occupied_threshold: int, unknown: str) -> tuple[Bools, Bools]:
     """
-    Return the cells (rows, cols) that are occupied, and those that are blocked as unknown.
+    Return which cells (rows, cols) are occupied, and which are blocked because they are unknown.
 
-    Values outside 0..100 are unknown, whatever the threshold.
+    Values outside 0..100 are unknown, whatever the threshold. With ``unknown`` 'free' the second
+    array is false everywhere.
 
     Raises
     ------
     SpaceError
-        When the data is no grid of whole numbers, or an argument is out of its range.
+        When ``data`` is no grid of whole numbers, ``occupied_threshold`` is not in 1..100, or
+        ``unknown`` is not 'blocked' or 'free'.
 
     """
     values = check_cells(data)

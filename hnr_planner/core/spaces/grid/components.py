@@ -12,7 +12,8 @@ def island_points(blocked_with_rim: Bools) -> NDArray[np.float64]:
     """
     Return the centre (k, 2) of one cell of each island, kernel frame.
 
-    An island is a component of blocked cells that does not touch the rim. Cells that share an edge
+    ``blocked_with_rim`` (rows + 2, cols + 2) includes the rim of blocked cells. An island is a
+    component of blocked cells that does not touch the rim. Cells that share an edge
     or only a corner are connected, since no path passes between them.
     """
     import cv2  # only here, as in fields.py
@@ -28,7 +29,11 @@ def island_points(blocked_with_rim: Bools) -> NDArray[np.float64]:
 
 
 def largest_component(labels: NDArray[np.int32]) -> Bools:
-    """Return the cells (rows, cols) of the largest component; none where no cell is free."""
+    """
+    Return which cells (rows, cols) belong to the largest component of free space.
+
+    ``labels`` has 0 for blocked cells. All values are false if no cell is free.
+    """
     sizes = np.bincount(labels.ravel())
     sizes[0] = 0
     return (labels == sizes.argmax()) & (labels > 0)
@@ -37,9 +42,11 @@ def largest_component(labels: NDArray[np.int32]) -> Bools:
 @kernel
 def nearest_in_component(labels, component, target, margin):
     """
-    Return the point (2,) of a component nearest to ``target`` (2,), and its distance.
+    Return the point (2,) of a component nearest to ``target`` (2,), and the distance between them.
 
-    Kernel frame [cells]. Free space is open: each coordinate is kept ``margin`` inside its cell.
+    Points and lengths are in the kernel frame [cells]. Free space is open, so each coordinate of
+    the point is kept ``margin`` inside its cell. The distance is inf if no cell has the label
+    ``component``.
     """
     rows, columns = labels.shape
     nearest, least = np.empty(2), math.inf

@@ -21,7 +21,11 @@ from hnr_planner.core.spaces.grid.traversal import (
 
 @kernel
 def first_exit_from_grid(grid, curve, end):
-    """Return the first parameter in [0, ``end``] at which a curve is not free; inf for none."""
+    """
+    Return the first parameter in [0, ``end``] at which a curve is not free; inf for none.
+
+    The curve is in the kernel frame [cells].
+    """
     free_distance = grid.free_distance
     x, y = coordinate(curve, 0), coordinate(curve, 1)
     if not is_free(free_distance, at(x, 0.0), at(y, 0.0)):
@@ -38,7 +42,11 @@ def first_exit_from_grid(grid, curve, end):
 
 @kernel
 def _first_exit_of_piece(free_distance, x, y, t, end):
-    """Follow a curve without turning points from ``t`` to ``end``; return its exit, or inf."""
+    """
+    Return the first parameter in [``t``, ``end``] at which a curve is not free, or inf.
+
+    The curve must not turn between ``t`` and ``end`` in either coordinate.
+    """
     x_at_t, y_at_t = at(x, t), at(y, t)
     column, column_step, beside_column = first_cell(x_at_t, at(x, end) - x_at_t)
     row, row_step, beside_row = first_cell(y_at_t, at(y, end) - y_at_t)
@@ -68,9 +76,9 @@ def _first_exit_of_piece(free_distance, x, y, t, end):
 @kernel
 def _across(f, t, cell, step, free, inside):
     """
-    Return where a coordinate leaves the cells up to ``free`` away; inf for never.
+    Return the parameter at which a coordinate leaves the cells up to ``free`` away, or inf.
 
-    When ``inside``, a point just before that, more than rounding away from the grid line.
+    When ``inside``, it is that of a point just before, ``SKIN`` [cells] away from the grid line.
     """
     if step == 0:
         return math.inf

@@ -1,7 +1,8 @@
 """
 Fields over the cells of a grid, by one pass of OpenCV each: inflation, distance, components.
 
-OpenCV is imported in the functions: it takes a tenth of a second, which other spaces do not need.
+OpenCV is imported in the functions: the import takes a tenth of a second, and other spaces do not
+need it.
 """
 
 from hnr_planner.core.spaces.grid.cells import Bools
@@ -14,7 +15,7 @@ FARTHEST = 255
 
 def inflate(occupied: Bools, radius: float) -> Bools:
     """
-    Return the cells whose centre is within ``radius`` [cells] of the centre of an occupied one.
+    Return which cells have their centre within ``radius`` [cells] of that of an occupied cell.
 
     Squared distances between cells are integers, so the limit on the distance lies between the
     roots of two integers, where the rounding of the transform does not matter.
@@ -32,7 +33,7 @@ def inflate(occupied: Bools, radius: float) -> Bools:
 
 def free_distance(blocked: Bools, *, closed_rim: bool = True) -> NDArray[np.uint8]:
     """
-    Return the Chebyshev distance [cells] from each cell to the nearest blocked one, at most 255.
+    Return the Chebyshev distance [cells] from each cell to the nearest blocked cell, at most 255.
 
     Parameters
     ----------
@@ -44,7 +45,7 @@ def free_distance(blocked: Bools, *, closed_rim: bool = True) -> NDArray[np.uint
     Returns
     -------
     (rows + 2, cols + 2) uint8
-        0 for blocked cells and, with ``closed_rim``, on the rim.
+        The distances, with the rim; 0 for blocked cells and, with ``closed_rim``, on the rim.
 
     """
     import cv2
@@ -58,7 +59,11 @@ def free_distance(blocked: Bools, *, closed_rim: bool = True) -> NDArray[np.uint
 
 
 def components(free: NDArray[np.bool_]) -> NDArray[np.int32]:
-    """Return the component (rows, cols) of each free cell, from 1; 0 for blocked cells."""
+    """
+    Return the number (rows, cols) of the component of each free cell, from 1; 0 where blocked.
+
+    Free cells that share an edge belong to one component, those that share only a corner do not.
+    """
     import cv2
 
     _, labels = cv2.connectedComponents(free.view(np.uint8), connectivity=4, ltype=cv2.CV_32S)

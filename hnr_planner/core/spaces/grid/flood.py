@@ -1,4 +1,4 @@
-"""Flood fill of a grid: a path through the centres of cells, wherever there is one."""
+"""Flood fill of a grid: find a path through the centres of cells if there is any free path."""
 
 import math
 
@@ -13,7 +13,13 @@ STEPS = ((0, 1), (1, 0), (0, -1), (-1, 0))
 
 @kernel
 def flood_path_in_grid(grid, start, goal, goal_radius, margin):
-    """Return a path (m, 2) found by breadth-first search over free cells; (0, 2) for none."""
+    """
+    Return a path (m, 2) found by breadth-first search over free cells; (0, 2) for none.
+
+    All points and lengths are in the kernel frame [cells]. ``start`` has to be free. The path ends
+    at ``goal`` for a ``goal_radius`` of 0, else within that radius, at least ``margin`` inside a
+    cell.
+    """
     grid = borrowed(grid)
     free_distance = grid.free_distance
     rows, columns = free_distance.shape
@@ -40,7 +46,12 @@ def flood_path_in_grid(grid, start, goal, goal_radius, margin):
 
 @kernel
 def _reaches(row, column, goal, goal_radius, margin, nearest):
-    """Return whether a cell holds the goal, or has a point in its region; write that point."""
+    """
+    Return whether a cell reaches the goal, and write the point where to ``nearest`` (2,).
+
+    For a ``goal_radius`` of 0 the cell has to hold the goal. Otherwise its point nearest to the
+    goal, ``margin`` inside the cell, has to be within that radius.
+    """
     if goal_radius == 0.0:
         copy_into(nearest, goal)
         return row == math.floor(goal[1]) and column == math.floor(goal[0])

@@ -30,7 +30,7 @@ class GridFrame:
     origin : (x, y, yaw)
         Pose of the outer corner of cell [0, 0] in the map frame [m, m, rad].
     shape : (rows, columns)
-        Cells of the grid, without the rim.
+        Numbers of rows and columns of the grid, without the rim.
 
     """
 
@@ -45,10 +45,10 @@ class GridFrame:
         cls, resolution: float, origin: Iterable[float], shape: tuple[int, ...]
     ) -> 'GridFrame':
         """
-        Build a frame from a caller's numbers, or raise SpaceError that names the wrong one.
+        Build a frame from a caller's numbers, or raise SpaceError that names the wrong number.
 
-        A resolution of single precision, as in a message, is replaced by its decimal
-        (``decimal``).
+        A resolution of single precision, as in a ROS message, is replaced by the decimal that it
+        rounds (see ``decimal``).
         """
         resolution = decimal(check_real('resolution', resolution, SpaceError))
         if not 0.0 < resolution < math.inf:
@@ -69,7 +69,7 @@ class GridFrame:
 
     @cached_property
     def rounding(self) -> float:
-        """Spacing of floating-point numbers at the far end of the map, in cells."""
+        """Spacing of floats [cells] at the largest coordinate of the map in the map frame."""
         extent = math.hypot(*self.shape) * self.resolution
         farthest = max(abs(self.origin[0]), abs(self.origin[1])) + extent
         return float(np.spacing(farthest)) / self.resolution
@@ -88,7 +88,7 @@ class GridFrame:
 
     @cached_property
     def to_cells(self) -> tuple[Floats, Floats]:
-        """Matrix (2, 2) and offset (2,) that convert a point of the map frame into this one."""
+        """Matrix (2, 2) and offset (2,) from the map frame [m] to the kernel frame [cells]."""
         cos, sin = self._turn
         matrix = np.array([[cos, sin], [-sin, cos]]) / self.resolution
         return matrix, self.RIM - matrix @ np.array(self.origin[:2])
@@ -116,9 +116,9 @@ def decimal(number: float) -> float:
     """
     Return the decimal of six digits whose single-precision value is ``number``, if any.
 
-    A message carries the resolution .05 in single precision, as .05000000074505806, and ratios of
-    such lengths would miss whole numbers. A decimal of six digits is determined by its value in
-    single precision; all other numbers are returned unchanged.
+    A ROS message carries the resolution .05 in single precision, as .05000000074505806, and ratios
+    of such lengths would miss whole numbers. A decimal of six digits is determined by its value in
+    single precision. A number that is no such value is returned unchanged.
     """
     short = float(f'{number:.6g}')
     with np.errstate(over='ignore', under='ignore'):
@@ -126,13 +126,17 @@ def decimal(number: float) -> float:
 
 
 def _in_rows(points: Floats) -> Floats:
-    """Return points (..., 2) as (k, 2), in the memory order that kernels are compiled for."""
+    """Return points (..., 2) as (k, 2), in C order, for which kernels are compiled."""
     return np.ascontiguousarray(points).reshape(-1, 2)
 
 
 @kernel
 def _to_cells(points, x, y, cos, sin, resolution, rim):
-    """Return points (k, 2) in the frame at (x, y) with the given yaw, in cells, plus the rim."""
+    """
+    Return ``points`` (k, 2) [m] in the grid's frame at (x, y) [cells], plus ``rim`` [cells].
+
+    ``cos`` and ``sin`` are those of the yaw of the grid's frame.
+    """
     cells = np.empty_like(points)
     for k in range(len(points)):
         dx, dy = points[k, 0] - x, points[k, 1] - y
@@ -143,7 +147,7 @@ def _to_cells(points, x, y, cos, sin, resolution, rim):
 
 @kernel
 def _from_cells(cells, x, y, cos, sin, resolution, rim):
-    """Return the points (k, 2) of cells (k, 2): the inverse of ``_to_cells``."""
+    """Return the points (k, 2) [m] at ``cells`` (k, 2) [cells]: the inverse of ``_to_cells``."""
     points = np.empty_like(cells)
     for k in range(len(cells)):
         dx, dy = (cells[k, 0] - rim) * resolution, (cells[k, 1] - rim) * resolution

@@ -17,7 +17,7 @@ class FramedSpace(Space):
     """
     A space of points (x, y) [m] in the map frame, whose kernels count in the cells of a grid.
 
-    A subclass adds the free points: a field ``data``, the compiled space in cells.
+    A subclass defines which points are free by a field ``data``, the compiled space in cells.
 
     Attributes
     ----------
@@ -32,7 +32,7 @@ class FramedSpace(Space):
 
     @property
     def shape(self) -> tuple[int, int]:
-        """Rows and columns."""
+        """Numbers of rows and columns of the grid, without the rim."""
         return self.frame.shape
 
     @property
@@ -42,7 +42,7 @@ class FramedSpace(Space):
 
     @property
     def origin(self) -> tuple[float, float, float]:
-        """Pose (x, y, yaw) of the grid in the map frame [m, m, rad]."""
+        """Pose (x, y, yaw) of the outer corner of cell [0, 0] in the map frame [m, m, rad]."""
         return self.frame.origin
 
     @property
@@ -63,11 +63,15 @@ class FramedSpace(Space):
 
     @cached_property
     def margin(self) -> float:
-        """Distance before a chord's end at which a motion stops, at least 8 roundings [cells]."""
+        """Distance [cells] before a chord's end at which a motion stops, at least 8 roundings."""
         return max(super().margin, 8.0 * self.frame.rounding)
 
     def compiled_at(self, origin: Floats | None) -> TransformedData:
-        """Return the compiled space in the map frame, its origin moved to ``origin`` (2,)."""
+        """
+        Return the compiled space in metres from ``origin``, along the axes of the map frame.
+
+        ``origin`` (2,) [m] is a point of the map frame; None keeps the origin of the map frame.
+        """
         matrix, offset = self.frame.to_cells
         if origin is not None:
             offset = self.frame.to_kernel(origin)
@@ -91,11 +95,19 @@ class FramedSpace(Space):
         return self.frame.turn_to_kernel(directions)
 
     def to_cells(self, points: Floats) -> Floats:
-        """Convert points (..., 2) [m] of the map frame to (column, row) from the grid's corner."""
+        """
+        Convert points (..., 2) [m] of the map frame to (column, row) [cells] from cell [0, 0].
+
+        They are counted from the outer corner of that cell, without the rim.
+        """
         return self.frame.to_kernel(points) - self.frame.RIM
 
     def from_cells(self, cells: Floats) -> Floats:
-        """Convert (column, row) (..., 2) from the grid's corner to points [m] of the map frame."""
+        """
+        Convert (column, row) (..., 2) [cells] to points (..., 2) [m] of the map frame.
+
+        They are counted from the outer corner of cell [0, 0], without the rim.
+        """
         return self.frame.from_kernel(cells + self.frame.RIM)
 
     def cell_centres(self, rows: ArrayLike, columns: ArrayLike) -> Floats:

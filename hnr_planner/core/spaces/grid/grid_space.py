@@ -38,11 +38,11 @@ flood_path.register(GridData)(flood_path_in_grid)
 @dataclass(frozen=True, eq=False, repr=False)
 class GridSpace(FramedSpace):
     """
-    The free points of an occupancy grid: ``GridSpace.from_occupancy`` or ``.from_blocked``.
+    The free points of an occupancy grid; build it by ``from_occupancy`` or ``from_blocked``.
 
     Row 0 of every array is the row nearest the origin, points are (x, y) in metres in the map
-    frame, and ``origin`` is the pose (x, y, yaw) of the grid in it. Blocked cells are closed and
-    everything outside the grid is blocked.
+    frame, and ``origin`` is the pose (x, y, yaw) of the grid in the map frame. Blocked cells are
+    closed and everything outside the grid is blocked.
 
     Attributes
     ----------
@@ -144,7 +144,7 @@ class GridSpace(FramedSpace):
         origin: Iterable[float],
         radius: float,
     ) -> 'GridSpace':
-        """Check the arguments, inflate the occupied cells, label the components."""
+        """Build the space: check the arguments, inflate occupied cells, label components."""
         frame = GridFrame.checked(resolution, origin, occupied.shape)
         radius = decimal(check_real('robot_radius', radius, SpaceError))
         if not 0.0 <= radius < np.inf:
@@ -155,7 +155,7 @@ class GridSpace(FramedSpace):
         return cls(frame, radius, GridData(distance, components(distance > 0)), obstacles)
 
     def __repr__(self) -> str:
-        """Name the size, the frame and the robot's radius."""
+        """Name the shape, the resolution, the origin and the robot's radius."""
         return (
             f'GridSpace(shape={self.shape}, resolution={self.resolution:g}, '
             f'origin={in_words(np.array(self.origin))}, robot_radius={self.robot_radius:g})'
@@ -165,24 +165,29 @@ class GridSpace(FramedSpace):
 
     @property
     def blocked(self) -> Bools:
-        """Cells (rows, cols) that no path may touch."""
+        """Which cells (rows, cols) are blocked: occupied, inflated, or unknown and closed."""
         return self.data.free_distance[1:-1, 1:-1] == 0
 
     @property
     def occupied(self) -> Bools:
-        """Cells (rows, cols) that are occupied in the map, before inflation."""
+        """Which cells (rows, cols) are occupied in the map, before inflation."""
         return self._obstacles.occupied
 
     def is_obstacle(self, row: int, column: int) -> bool:
-        """Return whether a cell is occupied, other than by the inflation of a costmap."""
+        """Return whether cell [row, column] is occupied, and not as inflation in a costmap."""
         return self._obstacles.is_obstacle(row, column)
 
     def inflated(self, rows: slice, columns: slice) -> Bools:
-        """Return which cells of a window are blocked by inflation, and hold no obstacle."""
+        """
+        Return which cells of a window of rows and columns only inflation blocks.
+
+        The inflation is that by the robot's radius or that of a costmap. Cells [row, column] are
+        counted in the map, without the rim.
+        """
         return self._obstacles.inflated(rows, columns)
 
     def reaches_to(self, point: ArrayLike) -> bool:
-        """Return whether ``point`` (2,) [m] lies on the map, its edge included."""
+        """Return whether ``point`` (2,) [m], map frame, lies in the grid, the edge included."""
         x, y = self.to_cells(check_point('point', point, 2))
         rows, columns = self.shape
         return bool(0.0 <= x <= columns and 0.0 <= y <= rows)
@@ -205,36 +210,43 @@ class GridSpace(FramedSpace):
 
     def connected(self, a: ArrayLike, b: ArrayLike) -> bool:
         """
-        Return whether a path joins two free points, exactly.
+        Return whether a free path joins the points ``a`` and ``b`` (2,) [m], map frame, exactly.
 
-        Free cells that share an edge are connected; those that share only a corner are not, since
-        the corner touches the two obstacles beside it.
+        It is false where one of the points is not free. Free cells that share an edge are
+        connected; those that share only a corner are not, since the corner touches the two
+        obstacles beside it.
         """
         label = self._component(check_point('a', a, 2))
         return label != 0 and label == self._component(check_point('b', b, 2))
 
     @property
     def components(self) -> NDArray[np.int32]:
-        """Component (rows, cols) of free space that each cell belongs to; 0 where blocked."""
+        """Number (rows, cols) of the component of each free cell, from 1; 0 where blocked."""
         return self.data.labels[1:-1, 1:-1]
 
     def component_of(self, point: ArrayLike) -> int:
-        """Return the component that holds ``point`` (2,) [m]; 0 where it is not free."""
+        """Return the component, from 1, that holds ``point`` (2,) [m]; 0 where it is not free."""
         return self._component(check_point('point', point, 2))
 
     def region_reachable(self, start: ArrayLike, goal: ArrayLike, radius: float) -> bool:
-        """Return whether a path leads from ``start`` to within ``radius`` [m] of ``goal``."""
+        """
+        Return whether a path leads from ``start`` (2,) to within ``radius`` [m] of ``goal`` (2,).
+
+        The points are in the map frame [m]; ``goal`` need not be free. False where ``start`` is
+        not free.
+        """
         return self.nearest_reachable(start, goal, radius) is not None
 
     def largest_component(self) -> Bools:
-        """Return the cells (rows, cols) bool of the largest component of free space."""
+        """Return which cells (rows, cols) are in the largest component; none if none is free."""
         return largest_component(self.components)
 
     def nearest_reachable(self, start: ArrayLike, goal: ArrayLike, radius: float) -> Floats | None:
         """
-        Return the point of the start's component nearest to ``goal``; None beyond ``radius`` [m].
+        Return the point (2,) [m] nearest to ``goal`` that a path from ``start`` reaches, or None.
 
-        Free space is open, so a nearest point on the rim of a cell is taken ``margin`` inside.
+        None is returned where ``start`` is not free, or no such point is within ``radius`` [m] of
+        ``goal``. Free space is open, so the point is kept ``margin`` inside its cell.
         """
         label = self._component(check_point('start', start, 2))
         target = self.frame.to_kernel(check_point('goal', goal, 2))
@@ -250,7 +262,11 @@ class GridSpace(FramedSpace):
 
     @cached_property
     def island_points(self) -> Floats:
-        """A point (k, 2) in each blocked component with free cells all around, kernel frame."""
+        """
+        One point (k, 2) in each component of blocked cells that does not touch the rim.
+
+        The points are centres of cells in the kernel frame [cells].
+        """
         return island_points(self.data.free_distance == 0)
 
     def _component(self, point: Floats) -> int:
@@ -261,16 +277,24 @@ class GridSpace(FramedSpace):
 
     @property
     def walls(self) -> NDArray[np.uint8]:
-        """Chebyshev distance [cells] of each cell to the nearest occupied one, with a rim."""
+        """Chebyshev distance [cells] to an occupied cell: (rows + 2, cols + 2), with the rim."""
         return self._obstacles.distance
 
     def clearance(self, points: ArrayLike) -> Floats:
-        """Return the distances (k,) [m] from points (k, 2) to occupied squares; inf for none."""
+        """
+        Return the distances (k,) [m] from points (k, 2) [m] to the nearest occupied cell.
+
+        Cells are squares, counted before inflation. The distances are inf if none is occupied.
+        """
         cells = self.frame.to_kernel(np.atleast_2d(check_points('points', points, 2)))
         return point_clearance(self._obstacles.distance, cells) * self.scale
 
     def path_clearance(self, path: ArrayLike) -> float:
-        """Return the least distance [m] from a path (m, 2) to occupied squares; inf for none."""
+        """
+        Return the least distance [m] from a path (m, 2) [m] to an occupied cell.
+
+        Cells are squares, counted before inflation. The distance is inf if none is occupied.
+        """
         points = check_points('path', path, 2)
         if points.ndim != 2 or len(points) == 0 or not np.isfinite(points).all():
             raise RequestError(f'path must be at least one finite point (m, 2), got {path!r}')
@@ -279,7 +303,12 @@ class GridSpace(FramedSpace):
 
     @cached_property
     def typical_clearance(self) -> float:
-        """Mean Chebyshev distance [cells] from a free cell to a blocked one, over a sample."""
+        """
+        Mean Chebyshev distance [cells] from a free cell to the nearest blocked cell.
+
+        It is the mean over a regular sample of about ``TYPICAL_CELLS`` cells; 1 if none of them is
+        free.
+        """
         stride = max(1, int(np.sqrt(self.data.labels.size / TYPICAL_CELLS)))
         distance = self.data.free_distance[::stride, ::stride]
         free = distance[distance > 0]

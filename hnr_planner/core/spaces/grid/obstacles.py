@@ -7,13 +7,17 @@ from hnr_planner.core.spaces.grid.fields import inflate
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-#: Value of the cells of a Nav2 costmap that inflation blocks; obstacles have 100. A map with this
-#: threshold of occupied cells is taken for such a costmap.
+#: Value of the cells of a Nav2 costmap that inflation blocks; obstacles have 100. A map whose
+#: ``occupied_threshold`` is this value is taken for such a costmap.
 COSTMAP_INFLATED = 99
 
 
 def costmap_inflation(data: ArrayLike, occupied_threshold: int) -> Bools | None:
-    """Return which cells (rows, cols) of a costmap are inflation; None for other maps."""
+    """
+    Return which cells (rows, cols) of a Nav2 costmap are inflation; None for other maps.
+
+    A map is taken for a costmap if ``occupied_threshold`` is ``COSTMAP_INFLATED``, 99.
+    """
     return np.asarray(data) == COSTMAP_INFLATED if occupied_threshold == COSTMAP_INFLATED else None
 
 
@@ -25,12 +29,13 @@ class Obstacles:
     Attributes
     ----------
     distance : (rows + 2, cols + 2) uint8
-        Chebyshev distance [cells] from each cell to the nearest occupied one, at most 255, with a
-        rim of one cell that is not occupied.
+        Chebyshev distance [cells] from each cell to the nearest occupied cell, at most 255, with a
+        rim of one cell that does not count as occupied.
     radius : float
         Radius of the inflation of occupied cells [cells].
     costmap_inflation : (rows, cols) bool or None
-        Occupied cells that are themselves the inflation of a costmap; None when none are.
+        Which occupied cells are themselves the inflation of a costmap; None if the map is no
+        costmap.
 
     """
 
@@ -40,17 +45,22 @@ class Obstacles:
 
     @property
     def occupied(self) -> Bools:
-        """Cells (rows, cols) that are occupied in the map, before inflation."""
+        """Which cells (rows, cols) are occupied in the map, before inflation."""
         return self.distance[1:-1, 1:-1] == 0
 
     def is_obstacle(self, row: int, column: int) -> bool:
-        """Return whether a cell is occupied, other than by the inflation of a costmap."""
+        """Return whether cell [row, column] is occupied, and not as inflation in a costmap."""
         return bool(self.distance[row + 1, column + 1] == 0) and not (
             self.costmap_inflation is not None and self.costmap_inflation[row, column]
         )
 
     def inflated(self, rows: slice, columns: slice) -> Bools:
-        """Return which cells of a window are blocked by inflation, and hold no obstacle."""
+        """
+        Return which cells of a window of rows and columns only inflation blocks.
+
+        The inflation is that by the robot's radius or that of a costmap. Cells [row, column] are
+        counted in the map, without the rim.
+        """
         reach = int(min(self.radius, max(self.distance.shape))) + 1
         top, left = max(rows.start - reach, 0), max(columns.start - reach, 0)
         around = slice(top, rows.stop + reach), slice(left, columns.stop + reach)
@@ -65,7 +75,7 @@ class Obstacles:
         return inflated
 
     def why_blocked(self, row: int, column: int, robot_radius: float) -> str:
-        """Return the reason why a blocked cell is blocked, for a robot of ``robot_radius`` [m]."""
+        """Return the reason why cell [row, column] is blocked; name ``robot_radius`` [m] in it."""
         cell = f'cell [{row}, {column}]'
         if self.is_obstacle(row, column):
             return f'inside an obstacle: {cell} is occupied'

@@ -1,11 +1,11 @@
 """
 Slabs: the free cells of a grid as rectangles, which meet along horizontal portals only.
 
-Each row of cells is cut into its maximal free runs. A run that is the same as one in the row below
-joins its slab, so a slab is the largest rectangle of equal runs. Two slabs are neighbours where
-their edges share more than a point: that interval of a grid line is a portal. Every convex corner
-of the obstacles ends exactly one portal, and no portal passes between two obstacles that touch at
-a corner, so paths through portals never squeeze through there.
+Each row of cells is cut into its maximal runs of free cells. A run with the same ends as a run in
+the row below joins the slab of that run, so a slab is the largest rectangle of equal runs. Two
+slabs are neighbours where their edges share more than a point: that interval of a grid line is a
+portal. Every convex corner of the obstacles ends exactly one portal, and no portal leads between
+two obstacles that touch at a corner, so paths through portals never pass there.
 
 Kernel frame: one unit is one cell, x before y.
 """
@@ -21,7 +21,7 @@ Ints = NDArray[np.int32]
 LEFT, RIGHT = 0, 1
 #: A point on a grid line is moved up by this [cells].
 OFF_LINE = 1e-9
-#: The exit of a slab that is no dead end.
+#: Entry of ``exits`` for a slab that is no dead end.
 THROUGH = -1
 
 
@@ -32,22 +32,23 @@ class Slabs(NamedTuple):
     Attributes
     ----------
     boxes : (n_slabs, 4) int32
-        Left, right, lower and upper edge of each slab.
+        Left, right, lower and upper edge [cells] of each slab.
     portals : (n_portals, 5) int32
-        Left end, right end and line of each portal, the slab below it and the slab above it;
-        ordered by line, then from left to right.
+        Left end x, right end x and height y [cells] of each portal, the index of the slab below it
+        and that of the slab above it; ordered by height, then from left to right.
     above, below : (n_slabs, 2) int32
-        First portal on the upper (lower) edge of each slab, and the first that is not.
+        Range of indices in ``portals`` of the portals on the upper (lower) edge of each slab: the
+        first, and one after the last.
     steps : (n_portals, 2, 2) int8
         Direction (x, y) away from the obstacle corner at the left and right end of each portal;
         (0, 0) where the end lies on a wall.
     runs : (n_runs,) int32
-        Slab of each free run, row after row and from left to right.
+        Index of the slab of each free run, row after row and from left to right.
     rows : (n_rows + 1,) int32
-        First run of each row.
+        Index in ``runs`` of the first run of each row, and the number of runs.
     exits : (n_slabs,) int32
-        The next slab on the path out of a dead end; ``THROUGH`` for slabs of no dead end, and the
-        slab itself where a tree of slabs has no other exit.
+        Index of the next slab on the way out of a dead end; ``THROUGH``, -1, for a slab that is in
+        no dead end, and the slab's own index at the last slab of a component that is a tree.
 
     """
 
@@ -63,7 +64,11 @@ class Slabs(NamedTuple):
 
 @kernel
 def build_slabs(free):
-    """Return the slabs of cells (rows, columns), nonzero where free; the rim is blocked."""
+    """
+    Return the slabs of the free cells of an array (rows, columns).
+
+    ``free`` is not 0 where a cell is free; the outermost rows and columns have to be 0.
+    """
     starts, ends, rows = _free_runs(free)
     runs, boxes = _merge_runs(starts, ends, rows)
     portals = _find_portals(runs, boxes, rows)
@@ -74,7 +79,12 @@ def build_slabs(free):
 
 @kernel
 def _free_runs(free):
-    """Return start and end (n_runs,) of every maximal free run, and the first run of each row."""
+    """
+    Return start and end (n_runs,) of every maximal free run, and ``rows`` (n_rows + 1,).
+
+    Start is the first column of the run, end the column after the last. ``rows`` is as in
+    ``Slabs``.
+    """
     n_rows, n_columns = free.shape
     rows = np.empty(n_rows + 1, dtype=np.int32)
     n_runs = 0
@@ -98,7 +108,7 @@ def _free_runs(free):
 
 @kernel
 def _merge_runs(starts, ends, rows):
-    """Return the slab (n_runs,) of each run, and the box (n_slabs, 4) of each slab."""
+    """Return the slab index (n_runs,) of each run, and the box (n_slabs, 4) of each slab."""
     runs = np.empty(len(starts), dtype=np.int32)
     boxes = np.empty((len(starts), 4), dtype=np.int32)
     n_slabs = 0
@@ -143,7 +153,7 @@ def _find_portals(runs, boxes, rows):
 
 @kernel
 def _portals_by_slab(portals, n_slabs):
-    """Return the range (n_slabs, 2) of portals on the upper and on the lower edge of each slab."""
+    """Return ``above`` and ``below`` (n_slabs, 2) of ``Slabs``: ranges of portals by slab."""
     above = np.zeros((n_slabs, 2), dtype=np.int32)
     below = np.zeros((n_slabs, 2), dtype=np.int32)
     for k in range(len(portals)):
@@ -156,7 +166,11 @@ def _portals_by_slab(portals, n_slabs):
 
 @kernel
 def _steps_aside(portals, boxes):
-    """Return the direction (n_portals, 2, 2) away from the corner at each end of each portal."""
+    """
+    Return the direction (n_portals, 2, 2) away from the corner at each end of each portal.
+
+    It is (0, 0) where the end lies on a straight wall, and not at a corner.
+    """
     steps = np.zeros((len(portals), 2, 2), dtype=np.int8)
     for k in range(len(portals)):
         lower, upper = portals[k, 3], portals[k, 4]
@@ -171,9 +185,10 @@ def _steps_aside(portals, boxes):
 @kernel
 def _find_dead_ends(portals, above, below):
     """
-    Return the exit (n_slabs,) of each slab.
+    Return ``exits`` (n_slabs,) of ``Slabs``: the next slab on the way out of a dead end.
 
-    A slab with one neighbour is a dead end, and so is one with one neighbour that is no dead end.
+    A slab with at most one neighbour is a dead end, and so is a slab of whose neighbours at most
+    one is no dead end.
     """
     n_slabs = len(above)
     exits, degrees = np.full(n_slabs, THROUGH, dtype=np.int32), np.empty(n_slabs, dtype=np.int32)
@@ -203,7 +218,11 @@ def _find_dead_ends(portals, above, below):
 
 @kernel
 def slab_at(slabs, x, y):
-    """Return the slab that holds a free point; for one on a grid line the slab above it."""
+    """
+    Return the index of the slab that holds the free point (x, y), kernel frame [cells].
+
+    For a point on a horizontal grid line it is the slab above the line.
+    """
     row = int(np.floor(y))
     low, high = slabs.rows[row], slabs.rows[row + 1]
     while high - low > 1:

@@ -1,15 +1,16 @@
 """
 The chord on a grid: exact cell traversal, with a distance field to skip empty space.
 
-Kernel frame: one unit is one cell, cell (row, column) is the square [column, column + 1] x
-[row, row + 1], x before y. ``free_distance[row, column]`` is the Chebyshev distance [cells] to the
-nearest blocked cell: 0 for blocked cells, and with ``d`` all cells within ``d - 1`` are free. The
-rim of the array is blocked, so a ray always ends.
+Kernel frame: one unit is one cell, cell [row, column] is the square of points (x, y) in [column,
+column + 1] x [row, row + 1]. ``free_distance[row, column]`` is the Chebyshev distance [cells] to
+the nearest blocked cell: it is 0 for blocked cells, and around a cell with distance ``d`` all
+cells up to ``d - 1`` away are free. The rim of the array is blocked, so a ray always ends.
 
 The line ``x + s u`` meets the grid line ``X`` at ``s = (X - x) / u``, whichever cells were visited
-before. A skip ends at a point that traversal cell by cell passes too, so both stop at the same
-number to the last bit. Blocked cells are closed: a ray through a corner needs all four cells to be
-free, and one along a grid line the cells on both sides.
+before. A skip over free cells ends at a point that traversal cell by cell passes too, so traversal
+with skips and without them stops at the same number to the last bit. Blocked cells are closed: a
+ray through a corner needs all four cells to be free, and one along a grid line the cells on both
+sides.
 """
 
 import math
@@ -59,7 +60,7 @@ def _contains(grid, x):
 
 @inlined
 def is_free(free_distance, x, y):
-    """Return whether every cell that touches the point is free."""
+    """Return whether every cell that touches the point (x, y) is free, kernel frame [cells]."""
     rows, columns = free_distance.shape
     if not (0.0 < x < columns and 0.0 < y < rows):
         return False
@@ -77,7 +78,7 @@ def is_free(free_distance, x, y):
 @component.register(GridData)
 @kernel
 def _component(grid, x):
-    """Return the label of the cell at ``x`` (2,); 0 where it is not free."""
+    """Return the label of the cell that holds ``x`` (2,); 0 where ``x`` is not free."""
     if not is_free(grid.free_distance, x[0], x[1]):
         return 0
     return int(grid.labels[math.floor(x[1]), math.floor(x[0])])
@@ -86,14 +87,14 @@ def _component(grid, x):
 @first_exit.register(GridData)
 @kernel
 def _first_exit(grid, x, u, t, horizon):
-    """Follow the ray from ``x + t u`` until a cell that it touches is blocked."""
+    """Return the first parameter from ``t`` on at which the ray touches a blocked cell."""
     return _traverse(grid.free_distance, x[0], x[1], u[0], u[1], t, horizon)
 
 
 @touches.register(GridData)
 @kernel
 def _touches(grid, x):
-    """Return whether one of the cells that touch the point is free."""
+    """Return whether at least one of the cells that touch ``x`` (2,) is free."""
     free_distance = grid.free_distance
     rows, columns = free_distance.shape
     if not (0.0 < x[0] < columns and 0.0 < x[1] < rows):
@@ -106,7 +107,11 @@ def _touches(grid, x):
 @first_entry.register(GridData)
 @kernel
 def _first_entry(grid, x, u, t):
-    """Follow the ray from cell to cell until the crossing into one touches a free cell."""
+    """
+    Return the first parameter from ``t`` on at which the ray touches a free cell, or inf.
+
+    The ray is followed from cell to cell.
+    """
     if _touches(grid, x + t * u):
         return t
     free_distance = grid.free_distance
@@ -145,7 +150,7 @@ def _slab(x, u, size):
 
 @kernel
 def _any_free(free_distance, left, right, below, above):
-    """Return whether a cell of a range of columns and rows, ends included, is free."""
+    """Return whether any cell in ranges of columns and rows, ends included, is free."""
     for row in range(below, above + 1):
         for column in range(left, right + 1):
             if free_distance[row, column] > 0:
@@ -156,7 +161,7 @@ def _any_free(free_distance, left, right, below, above):
 @segment_is_free.register(GridData)
 @kernel
 def _segment_is_free(grid, a, b):
-    """Follow the segment from ``a`` (2,) to ``b`` (2,) only."""
+    """Return whether the segment from ``a`` to ``b`` (2,) is free, without following it beyond."""
     dx, dy = b[0] - a[0], b[1] - a[1]
     if dx == 0.0 and dy == 0.0:
         return is_free(grid.free_distance, a[0], a[1])
@@ -168,7 +173,8 @@ def _traverse(free_distance, x, y, dx, dy, t, horizon):
     """
     Return the first parameter from ``t`` on at which the ray touches a blocked cell.
 
-    The ray is followed cell by cell, and from free square to free square where walls are far.
+    The ray is followed cell by cell, and by skips across free squares where walls are far. Where
+    it is free up to ``horizon``, some parameter above ``horizon`` is returned.
     """
     x_at_t, y_at_t = x + t * dx, y + t * dy
     if not is_free(free_distance, x_at_t, y_at_t):
@@ -212,7 +218,7 @@ def _traverse(free_distance, x, y, dx, dy, t, horizon):
 
 @inlined
 def is_corner_blocked(free_distance, row, column, row_step, column_step):
-    """Return whether a cell beside a diagonal step is blocked, so that its corner is."""
+    """Return whether a cell beside a diagonal step is blocked, and so the corner in between."""
     beside = free_distance[row, column + column_step]
     return beside == 0 or free_distance[row + row_step, column] == 0
 
@@ -228,7 +234,12 @@ def is_along_wall(free_distance, row, column, beside_row, beside_column):
 
 @inlined
 def first_cell(at, u):
-    """Return the cell ahead, the step to the next one, and -1 if the ray is on a grid line."""
+    """
+    Return the index of the cell ahead along one axis, the step to the next cell, and an offset.
+
+    The offset is that of the cell on the other side of the grid line: -1 if the ray runs along a
+    grid line, otherwise 0.
+    """
     cell = math.floor(at)
     if u > 0.0:
         return cell, 1, 0
@@ -247,7 +258,11 @@ def _crossing(x, u, cell, step):
 
 @inlined
 def _exit(x, per_u, cell, step, reach):
-    """Return a parameter just before the ray leaves the cells up to ``reach`` away, or inf."""
+    """
+    Return a parameter just before the ray leaves the cells up to ``reach`` away, or inf.
+
+    It is inf where the ray does not move along this axis.
+    """
     if step == 0:
         return math.inf
     side = cell + reach + 1 - SKIN if step > 0 else cell - reach + SKIN

@@ -1,4 +1,4 @@
-"""The cells of compiled polygons: the edges near each, and the polygon at its corner."""
+"""Build the cells of compiled polygons: the edges near each cell, the polygon at its corner."""
 
 import math
 
@@ -8,7 +8,7 @@ from hnr_planner.core.spaces.polygon.edges import AROUND, is_right, line, Polygo
 import numpy as np
 from numpy.typing import NDArray
 
-#: Mean number of cells for an edge, over the bounds.
+#: Number of cells in the bounds, divided by the number of edges.
 CELLS_FOR_AN_EDGE = 2.0
 
 
@@ -19,11 +19,11 @@ def edges_in_cells(edges: Floats, numbers: NDArray[np.int32], rounding: float) -
     Parameters
     ----------
     edges : (m, 4)
-        Ends (x, y, x, y) of each edge, with the inside on the left.
+        Ends (x, y, x, y) of each edge, kernel frame, with the inside of its polygon on the left.
     numbers : (m,) int32
         Number of the polygon of each edge, from 1.
     rounding : float
-        Distance to an edge up to which a point is on it.
+        Distance to an edge up to which a point counts as on the edge.
 
     """
     corners = edges.reshape(-1, 2)
@@ -45,10 +45,10 @@ def edges_in_cells(edges: Floats, numbers: NDArray[np.int32], rounding: float) -
 @kernel
 def _enlist(edges, lower, side, shape, filled, near):
     """
-    Append each edge to the lists of the cells near it, or only count.
+    Append each edge to the lists of the cells near the edge, or only count the entries.
 
-    ``filled`` (cells,) is the index in ``near`` (entries,) at which each list ends; it is advanced
-    by the appended edges. An empty ``near`` only counts them.
+    ``filled`` (cells,) is the index in ``near`` (entries,) at which the list of each cell ends; it
+    is advanced by the appended edges. With an empty ``near`` it is advanced, and nothing written.
     """
     rows, columns = shape
     for k in range(len(edges)):
@@ -73,7 +73,11 @@ def _enlist(edges, lower, side, shape, filled, near):
 
 @kernel
 def _level(edges, numbers, lower, side, levels):
-    """Write the number of the polygon at the upper right corner of each cell."""
+    """
+    Add to ``levels`` the number of the polygon at the upper right corner of each cell.
+
+    ``levels`` (rows, columns) has to be 0; it stays 0 where the corner is outside of all polygons.
+    """
     rows, columns = levels.shape
     for k in range(len(edges)):
         ax, ay, bx, by = edges[k]

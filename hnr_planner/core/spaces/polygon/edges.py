@@ -1,14 +1,15 @@
 """
 Polygons as a compiled space: edges in a grid of cells, each of which lists the edges near it.
 
-A ray is followed from cell to cell and tested against the edges there. The polygon that contains a
-point follows from its cell alone: the polygon at the upper right corner of the cell is stored, and
-from the point to that corner, to the right and then up, every edge crossed is the exit from a
-polygon or the entry into one. Both segments are parallel to an axis, so that comparisons of
-coordinates decide whether an edge is crossed, without rounding.
+A ray is followed from cell to cell and tested against the edges that each cell lists. The polygon
+that contains a point follows from its cell alone: the polygon at the upper right corner of the
+cell is stored, and from the point to that corner, to the right and then up, every edge crossed is
+the exit from a polygon or the entry into one. Both segments are parallel to an axis, so that
+comparisons of coordinates decide whether an edge is crossed, without rounding.
 
-No ray passes between two edges that share a corner: for both the side of the corner is computed
-from the same numbers. A point or a ray that is closer to an edge than rounding touches it.
+No ray passes between two edges that share a corner: on which side of the ray the corner lies is
+computed from the same numbers for both edges. A point or a ray that is closer to an edge than
+``rounding`` touches the edge.
 """
 
 import math
@@ -37,21 +38,22 @@ class PolygonData(NamedTuple):
     Attributes
     ----------
     edges : (m, 4)
-        Ends (x, y, x, y) of each edge, with the inside on the left.
+        Ends (x, y, x, y) of each edge, kernel frame, with the inside of its polygon on the left.
     numbers : (m,) int32
         Number of the polygon of each edge, from 1.
     rounding : float
-        Distance to an edge up to which a point is on it.
+        Distance to an edge up to which a point counts as on the edge.
     lower : (2,)
         Lower corner of the bounds, where the cells begin.
     side : float
-        Side of a cell.
+        Side of a cell, in units of the kernel frame.
     levels : (rows, columns) int32
         Number of the polygon that holds the upper right corner of each cell; 0 outside.
     first : (cells + 1,) int32
-        Index in ``near`` at which the edges of each cell begin, row by row.
+        Index in ``near`` at which the list of each cell begins, row by row, and the length of
+        ``near``.
     near : (entries,) int32
-        Indices of the edges in or at each cell.
+        Indices in ``edges`` of the edges in or near each cell.
 
     """
 
@@ -67,13 +69,17 @@ class PolygonData(NamedTuple):
 
 @kernel
 def line(lower, side, k):
-    """Return the coordinate of the grid line after ``k`` cells."""
+    """Return the coordinate of the grid line ``k`` cells of length ``side`` after ``lower``."""
     return lower + k * side
 
 
 @kernel
 def is_right(edges, k, x, y):
-    """Return whether edge ``k``, which crosses the horizontal line at (x, y), is right of it."""
+    """
+    Return whether edge ``k`` crosses the horizontal line through (x, y) right of that point.
+
+    The edge has to cross that line somewhere.
+    """
     ax, ay, bx, by = edges[k, 0], edges[k, 1], edges[k, 2], edges[k, 3]
     if x < min(ax, bx):
         return True
@@ -84,7 +90,11 @@ def is_right(edges, k, x, y):
 
 @kernel
 def _is_above(edges, k, x, y):
-    """Return whether edge ``k``, which crosses the vertical line at (x, y), is above it."""
+    """
+    Return whether edge ``k`` crosses the vertical line through (x, y) above that point.
+
+    The edge has to cross that line somewhere.
+    """
     ax, ay, bx, by = edges[k, 0], edges[k, 1], edges[k, 2], edges[k, 3]
     if y < min(ay, by):
         return True
@@ -95,7 +105,11 @@ def _is_above(edges, k, x, y):
 
 @kernel
 def _locate(space, x, y):
-    """Return the number of the polygon that contains a point; 0 outside of all, -1 on an edge."""
+    """
+    Return the number of the polygon, from 1, that contains the point (x, y).
+
+    It is 0 outside of all polygons, and -1 on an edge.
+    """
     rows, columns = space.levels.shape
     across, up = (x - space.lower[0]) / space.side, (y - space.lower[1]) / space.side
     if not (-AROUND < across < columns and -AROUND < up < rows):
@@ -125,7 +139,7 @@ def _locate(space, x, y):
 
 @kernel
 def _is_on(space, k, x, y):
-    """Return whether a point is on edge ``k``, up to rounding."""
+    """Return whether the point (x, y) is on edge ``k``, up to a distance of ``rounding``."""
     ax, ay, bx, by = space.edges[k, 0], space.edges[k, 1], space.edges[k, 2], space.edges[k, 3]
     rounding = space.rounding
     if x < min(ax, bx) - rounding or x > max(ax, bx) + rounding:
@@ -161,7 +175,11 @@ def _component(space, x):
 @first_exit.register(PolygonData)
 @kernel
 def _first_exit(space, x, u, t, horizon):
-    """Return where the ray from the point at ``t`` meets an edge."""
+    """
+    Return the first parameter from ``t`` on at which the ray meets an edge.
+
+    It is ``t`` where the point at ``t`` is not inside a polygon.
+    """
     px, py = x[0] + t * u[0], x[1] + t * u[1]
     if _locate(space, px, py) <= 0:
         return t
@@ -171,7 +189,11 @@ def _first_exit(space, x, u, t, horizon):
 @first_entry.register(PolygonData)
 @kernel
 def _first_entry(space, x, u, t):
-    """Return where the ray from the point at ``t`` meets an edge; ``t`` where it touches."""
+    """
+    Return the first parameter from ``t`` on at which the ray touches a polygon, or inf.
+
+    It is ``t`` where the point at ``t`` is in a polygon or on an edge.
+    """
     px, py = x[0] + t * u[0], x[1] + t * u[1]
     if _locate(space, px, py) != 0:
         return t
@@ -183,8 +205,8 @@ def _first_edge(space, x, y, ux, uy, horizon):
     """
     Return the first parameter at which a ray from a point off the edges meets an edge.
 
-    It is inf when the ray meets none, and may be any value above ``horizon`` when it meets none up
-    to there.
+    It is inf when the ray meets no edge at all, and may be any value above ``horizon`` when the
+    ray meets no edge up to ``horizon``.
     """
     rows, columns = space.levels.shape
     # Point and direction in units of a cell.
@@ -222,7 +244,11 @@ def _first_edge(space, x, y, ux, uy, horizon):
 
 @kernel
 def _steps(p, v, cell):
-    """Return the parameter at which ``p + s v`` leaves a cell, and that of one cell's length."""
+    """
+    Return the parameter s at which ``p + s v`` leaves a cell, and the step of s for one cell.
+
+    ``p`` and ``v`` are in cells, along one axis; both results are inf where ``v`` is 0.
+    """
     if v == 0.0:
         return math.inf, math.inf
     return (cell + (v > 0.0) - p) / v, 1.0 / abs(v)
@@ -230,7 +256,11 @@ def _steps(p, v, cell):
 
 @kernel
 def _within(p, v, cells, first, last):
-    """Intersect an interval of parameters with that in which ``p + s v`` is in [0, ``cells``]."""
+    """
+    Return the part of [first, last] in which ``p + s v`` is in [0, ``cells``].
+
+    In an empty part, the first end is above the last.
+    """
     if v == 0.0:
         return (first, last) if -AROUND <= p <= cells + AROUND else (math.inf, -math.inf)
     s, t = -p / v, (cells - p) / v
@@ -240,9 +270,10 @@ def _within(p, v, cells, first, last):
 @kernel
 def _meet(edge, tolerance, x, y, ux, uy):
     """
-    Return the first parameter above 0 at which a ray from off an edge meets it, or inf.
+    Return the first parameter above 0 at which a ray meets an edge, or inf.
 
-    A ray within ``tolerance`` of a corner, a distance times |u|, meets it.
+    The ray starts at (x, y), which must not be on the edge. It also meets the edge where it passes
+    an end of the edge at a distance of at most ``tolerance / |u|``.
     """
     ax, ay, bx, by = edge[0] - x, edge[1] - y, edge[2] - x, edge[3] - y
     a, b = ux * ay - uy * ax, ux * by - uy * bx
@@ -262,13 +293,13 @@ def _meet(edge, tolerance, x, y, ux, uy):
 
 @kernel
 def _if_ahead(s):
-    """Return a parameter above 0 unchanged, and inf for others."""
+    """Return the parameter ``s`` if it is above 0, and inf otherwise."""
     return s if s > 0.0 else math.inf
 
 
 @kernel
 def distance_to_edges(edges, points):
-    """Return the distances (k,) from points (k, 2) to the nearest of edges (m, 4)."""
+    """Return the distance (k,) from each of points (k, 2) to the nearest of edges (m, 4)."""
     nearest = np.empty(len(points))
     for i in range(len(points)):
         least = math.inf

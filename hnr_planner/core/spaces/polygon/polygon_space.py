@@ -1,4 +1,4 @@
-"""A polygon with holes, or several, as a space of the plane."""
+"""One or more polygons, which may have holes, as a space of the plane."""
 
 import math
 from typing import Any, TYPE_CHECKING
@@ -31,13 +31,14 @@ class PolygonSpace(Space):
     """
     The inside of a shapely polygon or multipolygon.
 
-    Rings are obstacles: a point on one is not free, and a ray stops at a corner that it touches.
+    The boundary rings are obstacles: a point on a ring is not free, and a line stops at a corner
+    that it touches.
     The polygons of a multipolygon may touch in points, where nothing passes.
 
     Parameters
     ----------
     polygon : shapely.Polygon or shapely.MultiPolygon
-        Valid and not empty. Coordinates z are ignored.
+        The polygons, valid and not empty. Coordinates z are ignored.
 
     Raises
     ------
@@ -74,30 +75,30 @@ class PolygonSpace(Space):
 
     @property
     def bounds(self) -> tuple[Floats, Floats]:
-        """Lower and upper corner (2,)."""
+        """Lower and upper corner (2,), caller's frame."""
         corners = np.array(self.polygon.bounds)
         return corners[:2], corners[2:]
 
     @property
     def margin(self) -> float:
-        """Distance before a chord's end at which a motion stops; above rounding errors."""
+        """Distance before a chord's end at which a motion stops, above the rounding of edges."""
         return max(super().margin, 8.0 * self.data.rounding)
 
     @property
     def typical_clearance(self) -> float:
-        """Mean distance to the walls of a corridor of the same area and length of boundary."""
+        """Mean distance to the wall in a corridor of the same area and boundary length."""
         return float(self.polygon.area / self.polygon.length / 2.0)
 
     @property
     def island_points(self) -> Floats:
-        """A point (k, 2) in each hole, kernel frame."""
+        """One point (k, 2) in each hole of the polygons, kernel frame."""
         from shapely import Polygon
 
         holes = [Polygon(hole).representative_point() for _, hole in self._holes()]
         return self.to_kernel(np.array([[point.x, point.y] for point in holes]).reshape(-1, 2))
 
     def covers_box(self, lower: Floats, upper: Floats) -> bool:
-        """Return whether the closed polygon covers a box."""
+        """Return whether the closed polygon covers the box between two corners (2,)."""
         from shapely import box
 
         return bool(self.polygon.covers(box(*lower, *upper)))
@@ -118,12 +119,20 @@ class PolygonSpace(Space):
         )
 
     def connected(self, a: ArrayLike, b: ArrayLike) -> bool:
-        """Return whether a path joins two free points: whether they lie in the same polygon."""
+        """
+        Return whether a path joins the points ``a`` and ``b`` (2,): both are in one polygon.
+
+        False where one of the points is not free.
+        """
         label = self._component(a)
         return label != 0 and label == self._component(b)
 
     def region_reachable(self, start: ArrayLike, goal: ArrayLike, radius: float) -> bool:
-        """Return whether the start's polygon comes nearer than ``radius`` to ``goal``."""
+        """
+        Return whether the polygon that holds ``start`` comes nearer than ``radius`` to ``goal``.
+
+        ``goal`` (2,) need not be free. False where ``start`` (2,) is not free.
+        """
         from shapely import Point
 
         label = self._component(start)
@@ -133,7 +142,11 @@ class PolygonSpace(Space):
         return bool(distance < check_number('radius', radius, 0.0))
 
     def clearance(self, points: ArrayLike) -> Floats:
-        """Return the distance (k,) from points (k, 2) to the nearest ring; 0 where not free."""
+        """
+        Return the distance (k,) from each of points (k, 2) to the nearest edge.
+
+        It is 0 for points that are not free.
+        """
         points = np.atleast_2d(check_points('points', points, 2))
         return distance_to_edges(self.data.edges, self.to_kernel(points)) * self.contains(points)
 
@@ -142,7 +155,7 @@ class PolygonSpace(Space):
         return int(component(self.data, self.to_kernel(check_point('point', point, 2))))
 
     def _holes(self) -> list[tuple[int, 'LinearRing']]:
-        """Return the rings that are holes, each with the number of its polygon."""
+        """Return the rings that are holes, each with the number of its polygon, from 1."""
         return [
             (number, hole)
             for number, polygon in enumerate(self._polygons, start=1)
@@ -150,12 +163,16 @@ class PolygonSpace(Space):
         ]
 
     def _name(self, number: int) -> str:
-        """Return the name of a polygon in messages."""
+        """Return the name of polygon ``number``, from 1, in messages, which count from 0."""
         return 'the polygon' if len(self._polygons) == 1 else f'polygon {number - 1}'
 
 
 def _check_polygons(polygon: Any) -> list['Polygon']:
-    """Return the polygons of a valid geometry, rings counter-clockwise, or raise SpaceError."""
+    """
+    Return the polygons of a valid geometry that is not empty, or raise SpaceError.
+
+    Their exterior rings are counter-clockwise, their holes clockwise.
+    """
     from shapely import MultiPolygon, Polygon
     from shapely.geometry.polygon import orient
     from shapely.validation import explain_validity
@@ -173,7 +190,11 @@ def _check_polygons(polygon: Any) -> list['Polygon']:
 
 
 def _edges(polygons: list['Polygon']) -> tuple[Floats, NDArray[np.int32]]:
-    """Return edges (m, 4) with the inside on their left, and the polygon (m,) of each, from 1."""
+    """
+    Return the edges (m, 4), and the number (m,) of the polygon of each, from 1.
+
+    The inside is on the left of each edge, which is (x, y) of its begin and of its end.
+    """
     edges, numbers = [], []
     for number, polygon in enumerate(polygons, start=1):
         for ring in (polygon.exterior, *polygon.interiors):
@@ -191,7 +212,11 @@ first_exit_on_curve.register(PolygonData)(first_exit_between_surfaces)
 @add_crossings.register(PolygonData)
 @kernel
 def _add_crossings(polygon, curve, end, crossings, n):
-    """Append the parameters where a curve meets the lines of edges; return their number."""
+    """
+    Append to ``crossings``, from index ``n``, where a curve meets the line through any edge.
+
+    Return ``n`` plus the number of these parameters, also of those that do not fit.
+    """
     normal = np.empty(2)
     for k in range(len(polygon.edges)):
         ax, ay, bx, by = polygon.edges[k]

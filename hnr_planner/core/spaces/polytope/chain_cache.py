@@ -3,7 +3,7 @@ The cache of a chain in a polytope: the distances from the chain's point to the 
 
 A line along ``u`` approaches the planes at the rates ``normals u``; a move by ``s`` subtracts
 ``s`` times the rates from the distances, without a product with the point. Along an axis the rates
-are one column of the normals, of which a sparse polytope reads the nonzero numbers only.
+are one column of the normals; where these are stored sparsely, only its nonzero numbers are read.
 
 Rounding lets the distances drift, so they are recomputed every ``REFRESH`` steps, and a move to
 less than ``doubt`` from a plane is checked from the point itself: every point of a chain is free.
@@ -28,7 +28,7 @@ from hnr_planner.core.spaces.polytope.planes import LONG, PolytopeData
 import numpy as np
 from numpy.typing import NDArray
 
-#: Least distance: distances that round to less are replaced by it, so that none is 0.
+#: Least distance: computed distances that are less are replaced by this one, so that none is 0.
 LEAST = float(np.finfo(np.float64).tiny)
 
 
@@ -39,13 +39,13 @@ class PolytopeCache(NamedTuple):
     Attributes
     ----------
     x, y : (dim,)
-        The chain's point, and memory for the next one.
+        The chain's point, and a work array for the next point.
     slacks : (m,)
-        Distances to the planes.
+        Distances from the chain's point to the planes.
     rates : (m,)
         Rates at which the line of the last chord approaches the planes.
     ratios : (m,)
-        Rates over distances: the inverse of the parameter at which each plane is met.
+        Rates divided by distances: the inverses of the parameters at which the line meets planes.
     ratios_signed, ratios_unsigned : (m,)
         The bits of the ratios as whole numbers, int64 and uint64.
 
@@ -63,14 +63,14 @@ class PolytopeCache(NamedTuple):
 @memory_size.register(PolytopeData)
 @kernel
 def _memory_size(polytope, dim):
-    """Return the number of floats for a point, slacks, rates and ratios."""
+    """Return the number of floats that store a point, slacks, rates and ratios."""
     return dim + 3 * len(polytope.offsets)
 
 
 @open_cache.register(PolytopeData)
 @inlined
 def _open_cache(polytope, x, memory):
-    """Return views of a chain's memory."""
+    """Return the cache of a chain: views of its point ``x`` (dim,) and of its ``memory``."""
     first, m = len(x), len(polytope.offsets)
     second, third = first + m, first + 2 * m
     ratios = memory[third:]
@@ -97,7 +97,11 @@ def _refresh(polytope, cache):
 @chord_cached.register(PolytopeData)
 @inlined
 def _chord_cached(polytope, cache, u, axis):
-    """Return the chord from the distances and the rates along ``u``."""
+    """
+    Return the chord (lower, upper), from the distances and the rates along ``u`` (dim,).
+
+    The rates are stored for the move that follows, except along an axis in the sparse layout.
+    """
     layout = polytope.layout
     if axis == NO_AXIS:
         _set_rates(layout, u, cache.rates)
@@ -112,7 +116,11 @@ def _chord_cached(polytope, cache, u, axis):
 @move_along.register(PolytopeData)
 @inlined
 def _move_along(polytope, cache, u, axis, s):
-    """Move, and update the distances; near a plane, check the end from the point itself."""
+    """
+    Move by ``s`` along ``u``, update the distances, and return whether the chain moved.
+
+    If a distance becomes ``doubt`` or less, the end is checked from the point itself.
+    """
     layout = polytope.layout
     if axis == NO_AXIS or _is_dense(layout):
         n_doubtful = _move_at_rates(cache, s, polytope.doubt)
@@ -130,7 +138,11 @@ def _move_along(polytope, cache, u, axis, s):
 
 @kernel
 def _move_and_refresh(polytope, cache, u, s):
-    """Move if the end is free, recompute the distances; return whether the chain moved."""
+    """
+    Move by ``s`` along ``u`` if the end is free; return whether the chain moved.
+
+    The distances are recomputed from the chain's point in either case.
+    """
     for i in range(len(u)):
         cache.y[i] = cache.x[i] + s * u[i]
     is_free = move_if_free(polytope, cache)
@@ -140,13 +152,13 @@ def _move_and_refresh(polytope, cache, u, s):
 
 @inlined
 def _is_dense(layout):
-    """Return whether the matrix is stored densely."""
+    """Return whether the normals are stored densely, in ``layout.dense``."""
     return len(layout.dense) > 0
 
 
 @inlined
 def _set_rates(layout, u, rates):
-    """Multiply the matrix by ``u`` (dim,) into ``rates`` (m,)."""
+    """Write the product of the normals and ``u`` (dim,) to ``rates`` (m,)."""
     if _is_dense(layout):
         for i in range(len(rates)):
             rates[i] = 0.0
@@ -190,7 +202,7 @@ def _chord_at_rates(cache):
 
 @inlined
 def _move_at_rates(cache, s, doubt):
-    """Update every distance; return how many are within the error ``doubt`` of 0."""
+    """Update every distance for a move by ``s``; return how many become ``doubt`` or less."""
     n_doubtful = 0
     for i in range(len(cache.slacks)):
         slack = cache.slacks[i] - s * cache.rates[i]
@@ -201,7 +213,7 @@ def _move_at_rates(cache, s, doubt):
 
 @inlined
 def _chord_along_sparse_axis(layout, axis, slacks):
-    """Return the chord along an axis from the nonzero numbers of one column."""
+    """Return the chord (lower, upper) along an axis, from the nonzero numbers of its column."""
     middle = layout.column_starts[axis, 1]
     lower, upper = -math.inf, math.inf
     for k in range(layout.column_starts[axis, 0], middle):
@@ -213,7 +225,11 @@ def _chord_along_sparse_axis(layout, axis, slacks):
 
 @inlined
 def _move_along_sparse_axis(layout, axis, slacks, s, doubt):
-    """Update the distances that the axis changes; return how many are within ``doubt`` of 0."""
+    """
+    Update the distances that a move by ``s`` along an axis changes.
+
+    Return how many of them become ``doubt`` or less.
+    """
     n_doubtful = 0
     for k in range(layout.column_starts[axis, 0], layout.column_starts[axis, 2]):
         slack = slacks[layout.rows[k]] - s * layout.values[k]
@@ -223,7 +239,11 @@ def _move_along_sparse_axis(layout, axis, slacks, s, doubt):
 
 
 def largest_error(normals: Floats, offsets: Floats, lower: Floats, upper: Floats) -> float:
-    """Bound the rounding error of a distance after ``REFRESH`` steps within bounds (dim,)."""
+    """
+    Return a bound on the rounding error of a distance to a plane after ``REFRESH`` updates.
+
+    ``lower`` and ``upper`` (dim,) are the corners of a box that holds the chain.
+    """
     reach = np.abs(normals) @ np.maximum(np.abs(lower), np.abs(upper)) + np.abs(offsets)
     largest = float(reach.max() + np.linalg.norm(upper - lower))
     return REFRESH * (4 + len(lower)) * float(np.finfo(np.float64).eps) * largest

@@ -1,4 +1,9 @@
-"""Validation of a polytope's inequalities, which drops those that every point satisfies."""
+"""
+Validation of the inequalities ``a x < b`` of a polytope, and their scaling.
+
+Each row of ``a`` and its right-hand side are divided by the length of the row, and rows that every
+point satisfies are dropped.
+"""
 
 from typing import Any
 
@@ -10,23 +15,23 @@ from numpy.typing import NDArray
 
 def check_inequalities(a: Any, b: Any) -> tuple[Floats, Floats, NDArray[np.intp]]:
     """
-    Return rows of unit length, their right-hand sides and their numbers in ``a``.
+    Return rows of unit length, their right-hand sides and their indices in ``a``.
 
     Parameters
     ----------
     a : (m, dim)
         One row for each inequality ``a x < b``, dense or a sparse matrix of scipy's.
     b : (m,)
-        Right-hand sides; inf for none.
+        Right-hand sides; a row with inf limits nothing.
 
     Returns
     -------
     normals : (k, dim)
-        Rows of ``a`` over their lengths. Rows that every point satisfies are left out.
+        Rows of ``a`` divided by their lengths. Rows that every point satisfies are left out.
     offsets : (k,)
-        Right-hand sides over the same lengths.
+        Right-hand sides divided by the same lengths.
     rows : (k,)
-        Indices of these rows in ``a``.
+        Index in ``a`` of each row of ``normals``.
 
     Raises
     ------
@@ -59,7 +64,7 @@ def check_inequalities(a: Any, b: Any) -> tuple[Floats, Floats, NDArray[np.intp]
 
 
 def _lengths(normals: Floats) -> Floats:
-    """Return the lengths (m,) of rows, without overflow or underflow of their squares."""
+    """Return the lengths (m,) of rows (m, dim), without overflow or underflow of squares."""
     largest = np.abs(normals).max(axis=1)
     lengths = np.linalg.norm(normals, axis=1)
     extreme = (largest > 1e150) | ((largest < 1e-150) & (largest > 0.0))

@@ -1,14 +1,15 @@
 """
-Measures of a polytope: the largest ball inside, its extent, and its bounds.
+Measures of a polytope: its largest inner ball, its extent, and its bounds.
 
 The largest ball and the bounds are linear programs. The extent of the polytope follows from its
 *analytic centre*, the point with the largest product of distances to the planes: with H the
 Hessian of the logarithmic barrier there and m planes, the ellipsoid ``(x - c) H (x - c) < 1`` lies
-inside, and the one m times as large holds all points (Boyd and Vandenberghe, Convex Optimization,
-section 8.5.3). That takes some dozen linear systems, where the bounds take 2 dim linear programs.
-The centre exists exactly when the polytope is bounded and has an inside.
+inside the polytope, and the ellipsoid m times as large holds all of its points (Boyd and
+Vandenberghe, Convex Optimization, section 8.5.3). To find that centre takes some dozen linear
+systems; the bounds take 2 dim linear programs. The centre exists exactly when the polytope is
+bounded and has an inside.
 
-A polytope whose coordinates differ much in size is measured in coordinates of about the same size.
+If the coordinates of a polytope differ much in size, each is divided by its size first.
 """
 
 from typing import Any, NamedTuple
@@ -38,16 +39,18 @@ STEP_MAX = 1.0 - 1e-6
 
 class Ball(NamedTuple):
     """
-    A largest ball inside a polytope, in coordinates divided by their sizes.
+    A largest ball inside a polytope, where each coordinate is divided by its size.
+
+    Centre and radius are given in the coordinates of the polytope itself.
 
     Attributes
     ----------
     centre : (dim,)
-        The Chebyshev centre.
+        The centre of the ball: the Chebyshev centre of the polytope in the divided coordinates.
     radius : float
-        Distance from the centre to the nearest plane.
+        Distance from the centre to the nearest plane of the polytope.
     sizes : (dim,)
-        Sizes of the coordinates: ones, unless they differ much.
+        Sizes by which the coordinates are divided: ones, unless the sizes differ much.
 
     """
 
@@ -58,14 +61,16 @@ class Ball(NamedTuple):
 
 class Reach(NamedTuple):
     """
-    Two boxes around the analytic centre: one touches the ellipsoid inside, one holds all points.
+    Two boxes around the analytic centre of a polytope, with sides along the axes.
+
+    The inner box bounds the ellipsoid inside the polytope, the outer one holds all points.
 
     Attributes
     ----------
     centre : (dim,)
-        The analytic centre.
+        The analytic centre of the polytope.
     inner, outer : (dim,)
-        Half of the sides of the boxes.
+        Halves of the sides of the inner and the outer box.
 
     """
 
@@ -81,7 +86,8 @@ def largest_ball(normals: Floats, offsets: Floats, rows: NDArray[np.intp]) -> Ba
     Raises
     ------
     SpaceError
-        When there is none, or no largest; the message counts the inequalities by ``rows`` (m,).
+        When there is no ball, or no largest one. The message names inequalities by their indices
+        ``rows`` (m,) in the caller's matrix.
 
     """
     dim = normals.shape[1]
@@ -99,7 +105,11 @@ def largest_ball(normals: Floats, offsets: Floats, rows: NDArray[np.intp]) -> Ba
 
 
 def _why_no_ball(found: Any, normals: Floats, rows: NDArray[np.intp]) -> SpaceError:
-    """Return the error that says why a linear program for the largest ball has no solution."""
+    """
+    Return the error that says why there is no largest ball.
+
+    ``found`` is the result of scipy for the last linear program that was tried.
+    """
     if found.status != 0 or found.x[-1] > FLAT:
         return why_no_reach(normals)
     binding = _listed(rows[np.flatnonzero(found.ineqlin.marginals)])
@@ -123,7 +133,7 @@ def _listed(rows: NDArray[np.intp]) -> str:
 
 
 def why_no_reach(normals: Floats) -> SpaceError:
-    """Return the error for a polytope without analytic centre, with a direction if unbounded."""
+    """Return the error for a polytope without analytic centre: it is unbounded or too thin."""
     dim = normals.shape[1]
     # A direction along which no slack decreases, and some increase.
     found = _minimum(normals.sum(axis=0), normals, np.zeros(len(normals)), sides=(-1.0, 1.0))
@@ -143,7 +153,7 @@ def reach(normals: Floats, offsets: Floats, start: Floats) -> Reach:
     Raises
     ------
     SpaceError
-        When the polytope is unbounded.
+        When the polytope is unbounded, or too thin to be measured.
 
     """
     x = start.copy()
@@ -183,7 +193,12 @@ def _step_length(rates: Floats) -> float:
 
 
 def bounds(normals: Floats, offsets: Floats, sizes: Floats) -> tuple[Floats, Floats]:
-    """Return the lower and upper corner (dim,): the extremes of every coordinate."""
+    """
+    Return the lower and upper corner (dim,) of the polytope ``normals x < offsets``.
+
+    They are the extremes of every coordinate, from 2 dim linear programs in ``x / sizes``. Raise
+    SpaceError when one of them fails.
+    """
     axes = np.eye(normals.shape[1])
     scaled, limits = _scaled(normals, offsets, sizes)
     found = [_minimum(cost, scaled, limits) for cost in np.concatenate([axes, -axes])]
@@ -195,7 +210,12 @@ def bounds(normals: Floats, offsets: Floats, sizes: Floats) -> tuple[Floats, Flo
 
 
 def _sizes_to_try(normals: Floats, offsets: Floats) -> list[Floats]:
-    """Return the sizes (dim,) of coordinates to try, in order: ones first, unless uneven."""
+    """
+    Return the sizes (dim,) of coordinates to try, in order.
+
+    Ones come first, unless the numbers in the columns of ``normals`` differ by more than
+    ``UNEVEN``.
+    """
     scaled = _sizes(np.column_stack([normals, offsets]))
     scaled = scaled[:-1] / scaled[-1]
     even = _sizes(normals)
@@ -205,7 +225,11 @@ def _sizes_to_try(normals: Floats, offsets: Floats) -> list[Floats]:
 
 
 def _sizes(matrix: Floats) -> Floats:
-    """Return factors (columns,) that, with some of rows, scale nonzero numbers to about 1."""
+    """
+    Return factors (columns,) that scale the nonzero numbers of ``matrix`` to about 1.
+
+    They do so together with factors of rows, which are not returned.
+    """
     is_nonzero = matrix != 0.0
     logs = np.log(np.abs(matrix), where=is_nonzero, out=np.zeros_like(matrix))
     n_in_rows = np.maximum(is_nonzero.sum(axis=1), 1)
@@ -218,7 +242,11 @@ def _sizes(matrix: Floats) -> Floats:
 
 
 def _scaled(normals: Floats, offsets: Floats, sizes: Floats) -> tuple[Floats, Floats]:
-    """Return the rows of unit length, and right-hand sides, of a polytope in ``x / sizes``."""
+    """
+    Return the normals and offsets of a polytope in the coordinates ``x / sizes``.
+
+    The rows are scaled to length 1 again.
+    """
     if not (sizes != 1.0).any():
         return normals, offsets
     rows = normals * sizes
@@ -232,7 +260,11 @@ def _minimum(
     limits: Floats,
     sides: tuple[float | None, float | None] = (None, None),
 ) -> Any:
-    """Minimize ``cost x`` where ``rows x <= limits``, all x between ``sides``: scipy's result."""
+    """
+    Minimize ``cost x`` where ``rows x <= limits``, and return the result of scipy.
+
+    Every coordinate of x is limited to the interval ``sides``; None is no limit.
+    """
     from scipy.optimize import linprog  # a quarter of a second, which other spaces do without
 
     return linprog(cost, A_ub=rows, b_ub=limits, bounds=sides, method='highs')

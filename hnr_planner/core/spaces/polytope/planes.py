@@ -1,7 +1,7 @@
 """
 The compiled planes of a polytope, in the layouts for the primitives and for walks.
 
-The kernels for walks are in ``chain_cache``.
+The kernels for walks are in the module ``chain_cache`` of this folder.
 """
 
 import math
@@ -19,9 +19,9 @@ from hnr_planner.core.spaces.primitives import contains, first_entry, first_exit
 import numpy as np
 from numpy.typing import NDArray
 
-#: Least number of rows of a matrix that is stored densely.
+#: Number of rows below which a matrix is never stored densely.
 LONG = 32
-#: A matrix is stored densely when at least one in this many of its numbers is not zero.
+#: A matrix is stored densely only if at least one in this many of its numbers is not zero.
 SPARSE = 4
 
 
@@ -32,17 +32,18 @@ class Layout(NamedTuple):
     Attributes
     ----------
     dense : (dim, m)
-        One row for each column; (0, 0) where only nonzero numbers are stored.
+        The transposed matrix; (0, 0) in the sparse layout, which has the other fields. They are
+        empty in the dense layout.
     column_starts : (dim, 3) uint64
         Indices in ``rows``, ``values`` and ``inverses`` at which the positive numbers of each
         column begin, at which the negative ones do, and at which they end.
     rows, values, inverses : (k,)
-        Row of each number (uint64), the number and its inverse.
+        Row (uint64) of each nonzero number, column by column, the number and its inverse.
     row_starts : (m + 1,) uint64
         Indices in ``columns`` and ``row_values`` at which the numbers of each row begin, and the
         end of the last.
     columns, row_values : (k,)
-        Column of each number (uint64), and the number.
+        Column (uint64) of each nonzero number, row by row, and the number.
 
     """
 
@@ -63,13 +64,13 @@ class PolytopeData(NamedTuple):
     Attributes
     ----------
     normals : (m, dim)
-        Unit vectors, outward.
+        Unit vectors across the planes, pointing out of the polytope.
     offsets : (m,)
-        The inequalities are ``normals x < offsets``.
+        Right-hand sides of the inequalities ``normals x < offsets``, kernel frame.
     layout : Layout
         The normals as walks read them.
     doubt : float
-        Largest error of a distance to a plane that walks update.
+        Bound on the rounding error of a distance to a plane that a walk updates.
 
     """
 
@@ -80,7 +81,12 @@ class PolytopeData(NamedTuple):
 
 
 def layout_of(matrix: Floats) -> Layout:
-    """Return a matrix (m, dim) in the dense or the sparse layout, whichever is read faster."""
+    """
+    Return a matrix (m, dim) in the dense or the sparse layout.
+
+    The layout is dense if the matrix has at least ``LONG`` rows, and at least one in ``SPARSE`` of
+    its numbers is not zero.
+    """
     m, dim = matrix.shape
     if m >= LONG and np.count_nonzero(matrix) * SPARSE >= matrix.size:
         none, empty = np.empty(0, np.uint64), np.empty(0)
@@ -124,7 +130,7 @@ def _touches(polytope, x):
 @first_exit.register(PolytopeData)
 @kernel
 def _first_exit(polytope, x, u, t, horizon):
-    """Return the upper end of the interval of the line inside, where it contains ``t``."""
+    """Return the upper end of the interval of the line inside if it contains ``t``; else ``t``."""
     lower, upper = _span(polytope, x, u, False)
     return upper if lower < t < upper else t
 
@@ -132,7 +138,7 @@ def _first_exit(polytope, x, u, t, horizon):
 @first_entry.register(PolytopeData)
 @kernel
 def _first_entry(polytope, x, u, t):
-    """Return the lower end of the interval of the line in the closure, or ``t`` within it."""
+    """Return the first parameter from ``t`` on at which the line is in the closure, or inf."""
     lower, upper = _span(polytope, x, u, True)
     return max(t, lower) if t <= upper else math.inf
 
@@ -166,7 +172,7 @@ def _span(polytope, x, u, closed):
 
 @kernel
 def _slack(polytope, k, x):
-    """Return the distance from ``x`` to plane ``k``, below 0 beyond it."""
+    """Return the distance from ``x`` (dim,) to plane ``k``; it is below 0 outside of the plane."""
     return polytope.offsets[k] - _rate(polytope, k, x)
 
 
@@ -182,7 +188,11 @@ def _rate(polytope, k, u):
 @add_crossings.register(PolytopeData)
 @kernel
 def _add_crossings(polytope, curve, end, crossings, n):
-    """Append the parameters where a curve meets the planes; return their number."""
+    """
+    Append to ``crossings``, from index ``n``, the parameters where a curve meets the planes.
+
+    Return ``n`` plus their number, also of those that do not fit.
+    """
     for k in range(len(polytope.offsets)):
         f = along(curve, polytope.normals[k])
         n = add_level_crossings(f, polytope.offsets[k], end, crossings, n)

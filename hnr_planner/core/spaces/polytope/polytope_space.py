@@ -22,27 +22,27 @@ class PolytopeSpace(Space):
     """
     The points x with ``a x < b`` in every row.
 
-    ``bounds`` are computed when first used: they take 2 dim linear programs. Walks do not use
-    them.
+    ``bounds`` are computed when first used, by 2 dim linear programs. Walks do not use
+    ``bounds``.
 
     Parameters
     ----------
     a : (m, dim)
-        One row for each inequality, dense or a sparse matrix of scipy's. Rows of zeros may be
-        among them, with a right-hand side above 0.
+        One row for each inequality, dense or a sparse matrix of scipy's. A row may be all zeros if
+        its right-hand side is above 0.
     b : (m,)
-        Right-hand sides; inf for none.
+        Right-hand sides; a row with inf limits nothing.
 
     Raises
     ------
     SpaceError
-        When the polytope is empty, has no interior, or is unbounded.
+        When the polytope is empty, has no interior, is unbounded, or is too thin for rounding.
 
     Attributes
     ----------
     centre : (dim,)
-        Centre of a largest ball inside; in coordinates divided by their sizes where those differ
-        by a factor of 1000 or more.
+        Centre of a largest ball inside, caller's frame. If the sizes of the coordinates differ by
+        a factor of more than 1000, it is a largest ball in coordinates divided by their sizes.
     inner_radius : float
         Distance from the centre to the nearest plane.
 
@@ -87,12 +87,12 @@ class PolytopeSpace(Space):
 
     @property
     def zero_length(self) -> float:
-        """Length up to which a chord counts as zero, as a fraction of the ball inside."""
+        """Length up to which a chord counts as zero: a fraction ``MARGIN`` of the inner radius."""
         return MARGIN * self.inner_radius
 
     @property
     def typical_clearance(self) -> float:
-        """Mean distance to the boundary in the largest ball inside."""
+        """Mean distance from a point of the largest inner ball to the sphere around that ball."""
         return self.inner_radius / (self.dim + 1)
 
     def covers_box(self, lower: Floats, upper: Floats) -> bool:
@@ -111,7 +111,12 @@ class PolytopeSpace(Space):
 
 
 def _origin(extent: Reach) -> Floats | None:
-    """Return the origin (dim,) of the kernel frame, None for 0, as ``kernel_origin`` does."""
+    """
+    Return the origin (dim,) of the kernel frame, in the caller's frame; None for 0.
+
+    A coordinate is counted from the analytic centre if rounding there is more than ``FINEST`` of
+    the width of the inner box, and else from 0. Raise SpaceError if it is more than ``COARSEST``.
+    """
     rounding = np.spacing(np.abs(extent.centre) + extent.outer)
     if not (rounding <= 2.0 * COARSEST * extent.inner).all():
         raise SpaceError(
@@ -124,7 +129,11 @@ def _origin(extent: Reach) -> Floats | None:
 
 
 def _moved(normals: Floats, offsets: Floats, origin: Floats) -> Floats:
-    """Return right-hand sides (m,) for points counted from ``origin``, in extended precision."""
+    """
+    Return the right-hand sides (m,) for points counted from ``origin`` (dim,).
+
+    They are computed in extended precision and rounded once.
+    """
     exact = np.longdouble
     return np.asarray(
         offsets.astype(exact) - (normals.astype(exact) * origin.astype(exact)).sum(axis=1),
@@ -133,7 +142,11 @@ def _moved(normals: Floats, offsets: Floats, origin: Floats) -> Floats:
 
 
 def _check_resolved(normals: Floats, offsets: Floats, extent: Reach) -> None:
-    """Raise SpaceError when the distances to the planes are no more than rounding."""
+    """
+    Raise SpaceError if a distance from the centre to a plane is too small to be resolved.
+
+    Each has to be above ``THINNEST`` times the sum of the sizes of its terms.
+    """
     distances = offsets - normals @ extent.centre
     terms = np.abs(normals) @ (np.abs(extent.centre) + extent.inner) + np.abs(offsets)
     if not (distances > THINNEST * terms).all():
