@@ -20,7 +20,7 @@ _NO_INTEGER = -(2**63)
 
 
 def divide(a: Any, b: Any) -> Any:
-    """Return ``a / b``; inf or nan where Python raises."""
+    """Return ``a / b``; for b = 0, where Python raises, inf, -inf or nan as in IEEE 754."""
     try:
         return a / b
     except ZeroDivisionError:
@@ -28,7 +28,7 @@ def divide(a: Any, b: Any) -> Any:
 
 
 def floor_divide(a: Any, b: Any) -> Any:
-    """Return ``a // b``; 0 for integers, inf or nan for floats where Python raises."""
+    """Return ``a // b``; for b = 0, 0 if both are integers, else inf, -inf or nan."""
     try:
         return a // b
     except ZeroDivisionError:
@@ -36,7 +36,7 @@ def floor_divide(a: Any, b: Any) -> Any:
 
 
 def modulo(a: Any, b: Any) -> Any:
-    """Return ``a % b``; 0 for integers, nan for floats where Python raises."""
+    """Return ``a % b``; for b = 0, 0 if both are integers, else nan."""
     try:
         return a % b
     except ZeroDivisionError:
@@ -48,7 +48,7 @@ def _over_zero(a: Any, b: Any) -> float:
 
 
 def power(a: Any, b: Any) -> Any:
-    """Return ``a ** b`` for numbers, as the C library computes it."""
+    """Return ``a ** b``: as Python for two integers, else a float, as the C library computes."""
     if isinstance(a, int) and isinstance(b, int):
         return a**b
     return float(np.float64(a) ** np.float64(b))
@@ -60,7 +60,7 @@ def square(a: Any) -> Any:
 
 
 def whole_power(a: Any, exponent: int) -> Any:
-    """Return ``a ** exponent`` for a constant >= 0, by squaring."""
+    """Return ``a ** exponent`` for an integer exponent >= 0, by repeated squaring."""
     product: Any = 1.0 if isinstance(a, float | np.floating) else 1
     while exponent:
         if exponent & 1:
@@ -72,7 +72,7 @@ def whole_power(a: Any, exponent: int) -> Any:
 
 
 def in_place(operation: Callable[[Any, Any], Any], a: Any, b: Any) -> Any:
-    """Return ``operation(a, b)``, written into ``a`` if that is an array."""
+    """Return ``operation(a, b)``; if ``a`` is an array, write the result into it and return it."""
     result = operation(a, b)
     if isinstance(a, np.ndarray):
         a[...] = result
@@ -164,10 +164,10 @@ MATH = SimpleNamespace(
 
 def boxed(value: Any) -> Any:
     """
-    Return what a kernel returned as Python gets it from machine code.
+    Return the result of an interpreted kernel with the types that machine code would return.
 
-    NumPy's scalars become Python's, in tuples too: so a call that follows has the same types,
-    whichever tier answered.
+    NumPy's scalars become Python's, in tuples too. So a later call with this result has the same
+    types of arguments, whether the kernel ran as machine code or interpreted.
     """
     if isinstance(value, np.generic):
         return value.item()

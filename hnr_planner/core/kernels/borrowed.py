@@ -6,8 +6,8 @@ tuple, each time with an atomic instruction: for a ray through a grid that is mo
 ray. A caller in Python holds the arguments of a kernel until it returns, so the count does not
 matter there: a kernel that begins with ``space = borrowed(space)`` runs several times faster.
 
-What was borrowed must not be returned, and an array made in the kernel must not be borrowed: its
-owner would be gone.
+A kernel must not return a borrowed array, which has no owner that keeps its memory, and must not
+borrow an array that it made itself, whose owner would be gone.
 """
 
 from typing import Any
@@ -17,7 +17,12 @@ from numba.extending import lower_builtin, type_callable
 
 
 def borrowed(value: Any) -> Any:
-    """Return an argument, arrays or tuples of them, without counting references from here on."""
+    """
+    Return an argument of a kernel, for which compiled code then counts no references.
+
+    ``value`` is an array, or a tuple of arrays, numbers and tuples. Called from Python, return
+    ``value`` unchanged.
+    """
     return value
 
 
@@ -28,12 +33,12 @@ def _type_of_borrowed(_typing_context: Any) -> Any:
 
 @lower_builtin(borrowed, types.Any)
 def _without_owner(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-    """Return the same array or tuple, of the same type, but without owners to count for."""
+    """Lower a call of ``borrowed``: return the same value with the owner of each array cleared."""
     return _disowned(context, builder, signature.return_type, arguments[0])
 
 
 def _disowned(context: Any, builder: Any, kind: Any, value: Any) -> Any:
-    """Put no owner in the place of every owner in a value of compiled code."""
+    """Return a value of numba type ``kind`` with the owner (meminfo) of each array set to null."""
     if isinstance(kind, types.Array):
         array = context.make_array(kind)(context, builder, value)
         array.meminfo = cgutils.get_null_value(array.meminfo.type)

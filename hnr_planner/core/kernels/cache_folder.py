@@ -1,9 +1,9 @@
 """
-The folder that keeps machine code: one for exactly these sources.
+The folder that keeps machine code on disk: one folder for each state of the core's sources.
 
-Numba's cache looks at the file of the kernel alone: a change in another file of the core would be
-answered from machine code of the past. So the cache lies in a folder named by the contents of all
-of the core's sources, and every edit starts a new one.
+Numba's cache looks at the file of the kernel alone: a change in another file of the core would not
+be noticed, and the kernel would run outdated machine code. So the cache lies in a folder named by
+the contents of all of the core's sources, and every edit starts a new one.
 """
 
 import atexit
@@ -25,7 +25,7 @@ _log = logging.getLogger('hnr_planner')
 
 
 def source_digest(folder: Path) -> str:
-    """Return a digest of the names and contents of every Python file below ``folder``."""
+    """Return 16 hex digits: a digest of paths and contents of Python files below ``folder``."""
     digest = hashlib.sha256()
     for path in sorted(folder.rglob('*.py')):
         digest.update(path.relative_to(folder).as_posix().encode())
@@ -36,11 +36,12 @@ def source_digest(folder: Path) -> str:
 @cache
 def cache_folder() -> Path:
     """
-    Return the folder of the machine code of exactly these sources.
+    Return the folder of the machine code of the present sources, and make it if it is missing.
 
-    It lies in the user's cache (``NUMBA_CACHE_DIR`` or ``XDG_CACHE_HOME`` where set). Where that
-    cannot be written a temporary folder takes its place, with a warning in the log: every process
-    compiles by itself.
+    It lies in ``NUMBA_CACHE_DIR`` if that is set, else in ``XDG_CACHE_HOME``, else in
+    ``~/.cache``. If it cannot be written, a temporary folder takes its place, with a warning in
+    the log: this process then compiles again what others have compiled, and the folder is removed
+    when the process ends.
     """
     home = os.environ.get('NUMBA_CACHE_DIR') or os.environ.get('XDG_CACHE_HOME') or '~/.cache'
     folder = Path(home).expanduser() / 'hnr_planner' / source_digest(CORE)
@@ -64,16 +65,17 @@ def cache_folder() -> Path:
 
 
 def cache_home(folder: Path) -> Path:
-    """Return what ``NUMBA_CACHE_DIR`` must be in a child, to get the same ``cache_folder()``."""
+    """Return the ``NUMBA_CACHE_DIR`` with which a child process has ``folder`` as its cache."""
     return folder.parents[1]
 
 
 @contextmanager
 def compiler_lock() -> Iterator[None]:
     """
-    Hold the lock of all processes that compile these sources into this cache folder.
+    Hold, within a block, the lock of all processes that compile into this cache folder.
 
-    The system frees it when its owner dies. Where it cannot be had, everybody compiles.
+    Wait while another process holds the lock; the system frees the lock when its owner ends. If
+    the lock's file cannot be opened, or the file system has no locks, run the block without it.
     """
     try:
         file = os.open(cache_folder() / 'compiler.lock', os.O_CREAT | os.O_RDWR, 0o644)

@@ -1,5 +1,5 @@
 """
-The clock of time limits: time that this thread had to work in.
+The clock of time limits: time of a thread without what it spent on machine code.
 
 The first call of a kernel may compile it or load its machine code. How long that takes depends
 on the machine's past, not on the request, so a time limit does not count it: ``working_time()``
@@ -13,7 +13,7 @@ import time
 
 
 class _Waiting(threading.local):
-    """What one thread has spent on the compiler."""
+    """Time that one thread has spent in ``not_working`` blocks."""
 
     #: Time [s] in blocks that have ended.
     total: float = 0.0
@@ -34,7 +34,7 @@ def working_time() -> float:
 
 @contextmanager
 def not_working() -> Iterator[None]:
-    """Stop the clock of this thread while the block compiles or loads machine code."""
+    """Stop ``working_time`` of this thread within a block that compiles or loads machine code."""
     if _waiting.depth == 0:
         _waiting.since = time.perf_counter()
     _waiting.depth += 1

@@ -1,13 +1,15 @@
 """
-Compilation in the background: machine code for the calls that come, while this one is interpreted.
+Compilation in the background: machine code for later calls, while the present call is interpreted.
 
 A kernel that has no machine code asks for it here (``request``). A child process of low priority
 (``compiler``) compiles into the cache on disk, one kernel after the other: what a call has asked
 for first, then what a use of the package needs in general (``prepare``). A thread of this process
-starts it, reads its notices, and loads what it made, so that no call waits for that.
+starts the child, reads its notices, and loads the machine code that it made, so that no call
+waits.
 
 The child ends by itself a few seconds after its work, and at once when this process ends, however
-that happens. Whatever goes wrong with it costs one line in the log, and calls go on interpreted.
+that happens. Whatever goes wrong with the child is logged in one line, and calls go on
+interpreted.
 """
 
 import atexit
@@ -28,23 +30,28 @@ from hnr_planner.core.kernels.needs import known_needs, Need, need_of, Workload
 
 _log = logging.getLogger('hnr_planner')
 
-#: Ends of the child by a signal to all processes of a group, which ends this one as well.
+#: Return codes of a child that was ended by a signal to all processes of its group. That signal
+#: ends this process as well, so that no warning is due.
 ENDED_BY_ORDER = (-signal.SIGINT, -signal.SIGTERM)
 
 
 class Status(NamedTuple):
-    """How far compilation in the background is, in this process."""
+    """
+    State of compilation in the background, for this process.
 
-    #: ``'compiled'``, or ``'interpreted'`` while something that was asked for is not there, or
-    #: where nothing is ever compiled.
+    Kernels are counted once for each signature (the types of their arguments).
+    """
+
+    #: ``'compiled'`` if all machine code that was asked for is loaded; ``'interpreted'`` while
+    #: some is pending, if some has failed, and in the mode ``interpreted``.
     tier: str
-    #: Number of kernels, each for one signature, that have arrived.
+    #: Number of kernels whose machine code was asked for and is loaded.
     compiled: int
-    #: Number of those that are asked for.
+    #: Number of kernels that are asked for and neither loaded nor failed.
     pending: int
-    #: Number of those that will not come in this process.
+    #: Number of kernels that could not be compiled or loaded, and stay interpreted.
     failed: int
-    #: Time [s] that the child has worked, without its wait for more.
+    #: Time [s] that children have worked, without their wait for more work.
     elapsed: float
     #: Whether the child is running.
     running: bool
@@ -60,15 +67,20 @@ class Status(NamedTuple):
 
 
 class Notice(NamedTuple):
-    """What the child has to tell of a need; of all that a workload needs, before it compiles."""
+    """
+    Message from the child: one need is done or has failed, or what a workload needs.
 
+    For a need it comes after its compilation; for a workload, before any of its needs is compiled.
+    """
+
+    #: The need; for a workload, the list of all its needs, empty if they could not be found.
     about: Need | list[Need]
-    #: Empty, or why there will be no machine code.
+    #: Empty, or why the need has no machine code, or why the workload's needs are not known.
     failure: str = ''
 
 
 class _Background:
-    """The child process of this process, and what it was asked for."""
+    """The child process that compiles for this process, and what is still asked of it."""
 
     def __init__(self) -> None:
         self.lock = threading.RLock()
@@ -93,7 +105,12 @@ class _Background:
         self.is_ending = False
 
     def ask(self, message: Need | Workload) -> None:
-        """Hand a message to the child; start one if none is running."""
+        """
+        Send a message to the child if one is running, else start the thread that runs one.
+
+        A new child gets everything in ``asked``, ``workloads`` and ``general``: the caller puts
+        the message there first.
+        """
         with self.lock:
             if self.is_running:
                 self.messages.put(message)
@@ -106,7 +123,13 @@ class _Background:
     # -- in the thread: it outlives the child, which the system ends with the thread that made it
 
     def run(self) -> None:
-        """Run children until nothing is left to ask for."""
+        """
+        Run one child after another until nothing is left to ask for, or until a child fails.
+
+        A further child runs only if the last one ended in order, after some notice, while a new
+        request was on its way. Else what is left is given up, with a warning, unless this process
+        is ending or the child was ended by a signal in ``ENDED_BY_ORDER``.
+        """
         while True:
             self.notices = 0
             code = self.run_child()
@@ -128,7 +151,7 @@ class _Background:
                 return
 
     def give_up(self, reason: str) -> None:
-        """Compile no more in this process."""
+        """Compile no more in this process: count all that is left as failed, and log why."""
         self.has_given_up = True
         self.failed += len(self.asked) + len(self.general)
         self.asked.clear()
@@ -137,7 +160,12 @@ class _Background:
         _log.warning('%s: what has no machine code yet runs interpreted', reason)
 
     def run_child(self) -> int:
-        """Run one child: ask it for all that is left, load what it makes; return how it ended."""
+        """
+        Run one child: ask it for all that is left, and load what it makes.
+
+        Return the child's return code, as of ``Popen``: 0 if it ended in order, minus the number
+        of the signal if a signal ended it. Return -1 if it could not be started.
+        """
         try:
             process = subprocess.Popen(
                 [
@@ -177,7 +205,12 @@ class _Background:
         return code
 
     def take(self, notice: Notice) -> None:
-        """Take note of what the child says; load what it has made."""
+        """
+        Process a notice of the child.
+
+        If it lists the needs of a workload, add them to ``general``. If it is about one need, load
+        its machine code, and count the need as compiled or failed.
+        """
         self.notices += 1
         self.heard = time.monotonic()
         if isinstance(notice.about, list):
@@ -200,7 +233,7 @@ class _Background:
             _log.warning('%s stays interpreted: %s', notice.about.name, reason)
 
     def load(self, need: Need) -> bool:
-        """Load machine code that the child has made; return whether it is there."""
+        """Load the machine code of ``need`` from the cache; return whether it is loaded."""
         try:
             kernel, signature = self.asked.get(need) or need.resolve()
         except Exception:  # its module cannot be imported here
@@ -209,14 +242,18 @@ class _Background:
 
 
 def _environment() -> dict[str, str]:
-    """Return the environment in which a child finds the same modules and the same cache."""
+    """Return the environment variables with which a child has these modules and this cache."""
     path = os.pathsep.join(os.path.abspath(folder) for folder in sys.path)
     home = cache_home(cache_folder())
     return {**os.environ, 'PYTHONPATH': path, 'NUMBA_CACHE_DIR': str(home)}
 
 
 def _write(process: Any, messages: Any) -> None:
-    """Write messages to a child as they come, in a thread: the child may be slow to read."""
+    """
+    Write messages to the child's standard input as they come, until a message is None.
+
+    It runs in a thread of its own, since the child may be slow to read.
+    """
     try:
         while (message := messages.get()) is not None:
             pickle.dump(message, process.stdin)
@@ -230,7 +267,12 @@ _background = _Background()
 
 
 def request(kernel: Any, signature: Any) -> None:
-    """Ask for machine code that a call has missed."""
+    """
+    Ask the child for machine code of ``kernel`` for ``signature``, which a call has missed.
+
+    Do nothing if it is asked for already, if compilation was given up, or if another process would
+    not find the kernel or its types.
+    """
     need = None if _background.has_given_up else need_of(kernel, signature)
     with _background.lock:
         if need is None or need in _background.asked:
@@ -240,7 +282,12 @@ def request(kernel: Any, signature: Any) -> None:
 
 
 def prepare(workload: Workload) -> None:
-    """Load what a workload needs, in the background; compile what is not in the cache."""
+    """
+    Load the machine code that a workload needs; have the child compile what the cache lacks.
+
+    Both happen in the background, and only in the mode ``auto``; in other modes, and once
+    compilation was given up, do nothing.
+    """
     if mode() is Mode.AUTO and not _background.has_given_up:
         threading.Thread(target=_prepare, args=(workload,), daemon=True).start()
 
@@ -255,13 +302,13 @@ def _prepare(workload: Workload) -> None:
 
 
 def _is_loaded(need: Need) -> bool:
-    """Load machine code if it is in the cache; return whether it is."""
+    """Load the machine code of ``need`` if the cache has it; return whether it is loaded."""
     kernel, signature = need.resolve()
     return bool(kernel.load(signature))
 
 
 def status() -> Status:
-    """Return how far compilation in the background is."""
+    """Return the present state of compilation in the background."""
     with _background.lock:
         pending = len(_background.asked) + len(_background.general)
         is_waiting = pending > 0 or bool(_background.workloads)
@@ -281,13 +328,13 @@ def status() -> Status:
 
 
 def _forget() -> None:
-    """Begin anew in a forked process: threads and child belong to its parent."""
+    """Reset the state in a forked process: the threads and the child belong to its parent."""
     global _background
     _background = _Background()
 
 
 def _end() -> None:
-    """End the child with this process, and wait for it."""
+    """Kill the child when this process ends, and wait until the child has ended."""
     _background.is_ending = True
     process = _background.process
     if process is not None:

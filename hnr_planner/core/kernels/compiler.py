@@ -2,8 +2,9 @@
 The child process that compiles: ``python -m hnr_planner.core.kernels.compiler PARENT``.
 
 It reads needs and workloads from its standard input, compiles into the cache folder, and writes a
-notice for each need to its standard output. Needs that were asked for come before those that a
-workload has. It ends when it has had nothing to do for a while, and with its parent.
+notice for each need and each workload to its standard output. Needs that calls have asked for are
+compiled before those of workloads. The process ends when it has had no work for ``PATIENCE``
+seconds, and when its parent ends.
 """
 
 import ctypes
@@ -20,16 +21,16 @@ from hnr_planner.core.kernels.compilation import Notice
 from hnr_planner.core.kernels.needs import Need, Workload
 from hnr_planner.core.kernels.workloads import needs_of
 
-#: Time [s] after which it ends for want of work.
+#: Time [s] without work after which the process ends.
 PATIENCE = 5.0
-#: Order of work: what a call waits for, to find out what a workload needs, and what it needs.
+#: Order of work: compile what a call has asked for; find out what a workload needs; compile that.
 ASKED, WORKLOAD, GENERAL = range(3)
 #: ``PR_SET_PDEATHSIG`` of ``prctl``.
 _DEATH_SIGNAL = 1
 
 
 def main(parent: int) -> None:
-    """Work until there is nothing to do, or ``parent`` has ended."""
+    """Work until there was no work for ``PATIENCE`` seconds, or process ``parent`` has ended."""
     notices = os.fdopen(os.dup(1), 'wb')
     os.dup2(2, 1)  # whatever prints does not come between
     _end_with(parent)
@@ -51,7 +52,12 @@ def main(parent: int) -> None:
 
 
 def _end_with(parent: int) -> None:
-    """Let the system end this process when its parent ends, where it can; see ``_read`` too."""
+    """
+    Let the system end this process when process ``parent`` ends, on Linux.
+
+    Elsewhere ``_read`` ends it, when the parent's end of the input is closed. If ``parent`` has
+    ended already, end at once.
+    """
     if sys.platform == 'linux':
         ctypes.CDLL(None).prctl(_DEATH_SIGNAL, signal.SIGKILL)
     if os.getppid() != parent:
@@ -59,7 +65,7 @@ def _end_with(parent: int) -> None:
 
 
 def _read(messages: BinaryIO, work: Any, numbers: Any) -> None:
-    """Put messages in order as they come; end the process when the other end is closed."""
+    """Put messages into the queue ``work`` by their order; end the process when input ends."""
     try:
         while True:
             message = pickle.load(messages)
@@ -70,7 +76,7 @@ def _read(messages: BinaryIO, work: Any, numbers: Any) -> None:
 
 
 def _compile(need: Need) -> Notice:
-    """Have machine code in the cache."""
+    """Compile a need into the cache, unless it is there; return a notice, with any failure."""
     try:
         kernel, signature = need.resolve()
         kernel.ensure_compiled(signature)
@@ -80,7 +86,7 @@ def _compile(need: Need) -> Notice:
 
 
 def _find_out(workload: Workload) -> Notice:
-    """Find out what a workload needs."""
+    """Return a notice of all needs of a workload, or of why they could not be found."""
     try:
         return Notice(needs_of(workload))
     except Exception as error:  # whatever its own calls raise

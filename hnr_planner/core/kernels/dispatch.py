@@ -14,8 +14,9 @@ kernel states the contract, and answers for every type that registers no other:
 ...     return math.pi * disc.radius**2
 
 Compiled code that calls ``area`` gets the kernel for the NamedTuple that it is compiled for, and
-looks nothing up when it runs. Python that calls ``area`` calls that kernel, with the tiers that
-every kernel has. Interpreted code calls its interpreted form.
+looks nothing up when it runs. A call of ``area`` from Python is a call of the kernel for its
+argument, as machine code or interpreted (``kernel``). Interpreted code calls the interpreted form
+of that kernel.
 """
 
 from collections.abc import Callable
@@ -33,19 +34,19 @@ class Dispatched(Protocol):
     """A function with a kernel for each type of its first argument."""
 
     def __call__(self, *arguments: Any) -> Any:
-        """Call the kernel for the first argument."""
+        """Call the kernel for the type of the first argument, and return its result."""
 
     def interpreted(self, *arguments: Any) -> Any:
-        """Run the kernel for the first argument interpreted."""
+        """Run the kernel for the type of the first argument, interpreted in any mode."""
 
     def interpreted_form(self, *arguments: Any) -> Any:
-        """Call the interpreted form of the kernel for the first argument."""
+        """Call the interpreted form of that kernel, as other interpreted forms do."""
 
     def kernel_for(self, first: Any) -> Kernel:
-        """Return the kernel that answers for a first argument."""
+        """Return the kernel for the type of ``first``, or the default if none is registered."""
 
     def register(self, data_type: type) -> Callable[[Kernel], Kernel]:
-        """Return a decorator: its kernel answers for NamedTuples of ``data_type``."""
+        """Return a decorator that registers a kernel for first arguments of ``data_type``."""
 
     def knows(self, data: Any) -> bool:
         """Return whether a kernel is registered for the type of ``data``."""
@@ -62,15 +63,15 @@ class _DispatchedType(types.Callable, types.Dummy):
         return typeof(self.kernel_for(arguments[0]))
 
     def get_call_type(self, context: Any, args: Any, kws: Any) -> Any:
-        """Type a call by a kernel."""
+        """Return numba's type of a call: that of the kernel for the first argument's type."""
         return self._type_for(args).get_call_type(context, args, kws)
 
     def get_call_signatures(self) -> tuple[Any, bool]:
-        """Name no signatures: each kernel has its own."""
+        """Return no signatures, since each registered kernel has its own."""
         return (), True
 
     def get_impl_key(self, sig: Any) -> Any:
-        """Return the key of the code that a kernel calls."""
+        """Return numba's key of the code that a call with signature ``sig`` runs."""
         return self._type_for(sig.args).get_impl_key(sig)
 
 
@@ -78,7 +79,11 @@ register_model(_DispatchedType)(models.OpaqueModel)
 
 
 def dispatched(default: Kernel) -> Dispatched:
-    """Let other kernels answer for a kernel, each for a type of its first argument."""
+    """
+    Make a kernel the default of a function that picks its kernel by the first argument's type.
+
+    Kernels for other types are added with ``register``.
+    """
     kernels: dict[type, Kernel] = {}
 
     def kernel_for(first: Any) -> Kernel:
@@ -121,7 +126,7 @@ def dispatched(default: Kernel) -> Dispatched:
 
 
 def _has_members(data: Any) -> bool:
-    """Return whether a tuple of compiled code holds a NamedTuple, however deep."""
+    """Return whether numba's tuple type ``data`` holds a NamedTuple, at any depth."""
     return any(
         isinstance(member, types.BaseNamedTuple)
         or (isinstance(member, types.BaseTuple) and _has_members(member))

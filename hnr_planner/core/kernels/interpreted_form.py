@@ -1,10 +1,11 @@
 """
 The interpreted form of a kernel: plain Python that gives what machine code gives, to the last bit.
 
-The form is the kernel's source with three changes. What it calls is interpreted as well: every
-kernel, and every dispatched function. Its arithmetic is that of machine code (``arithmetic``). And
-its loops look whether their thread was interrupted (``interruption``), so that a time limit or a
-cancellation ends a search that takes far longer than the compiled one would.
+The form is the kernel's source with three changes. Kernels and dispatched functions that the
+source calls are interpreted as well. Arithmetic is that of machine code (``arithmetic``). And
+every loop checks in each turn whether its thread was interrupted (``interruption``), so that a
+time limit or a cancellation ends an interpreted search, which takes far longer than a compiled
+one.
 """
 
 import ast
@@ -34,7 +35,12 @@ _CALLED = {
 
 
 def interpreted_form(function: types.FunctionType) -> Callable[..., Any]:
-    """Return the interpreted form of a kernel's Python function."""
+    """
+    Return the interpreted form of a kernel, given its Python function.
+
+    If the file of the function was edited since it was imported, or cannot be read, the source is
+    not changed: loops then check for no interruption, and arithmetic is Python's.
+    """
     code = _changed_code(function)
     scope = dict(function.__globals__)
     for name in _global_names(code):
@@ -49,7 +55,7 @@ def interpreted_form(function: types.FunctionType) -> Callable[..., Any]:
 
 
 def _interpreted(value: Any) -> Any:
-    """Return what takes the place of a global of a kernel."""
+    """Return what an interpreted form has in the place of a kernel's global: often the same."""
     if value is math:
         return arithmetic.MATH
     # Kernels and dispatched functions have a form; nothing else that is called has one.
@@ -68,7 +74,7 @@ def _global_names(code: types.CodeType) -> Iterator[str]:
 
 
 def _changed_code(function: types.FunctionType) -> types.CodeType:
-    """Return the code of the changed source; the code as it is if the file is not its own."""
+    """Return the code of the changed source; the function's own code if its file has changed."""
     code = function.__code__
     as_written, changed = _codes(code.co_filename)
     key = code.co_name, code.co_firstlineno
@@ -82,7 +88,11 @@ _Codes: TypeAlias = dict[tuple[str, int], types.CodeType]
 
 @cache
 def _codes(file: str) -> tuple[_Codes, _Codes]:
-    """Return the code of the functions of a file, as it is written and as it is changed."""
+    """
+    Return the code of all functions of ``file``: as it is written, and as ``_Changes`` makes it.
+
+    Keys are the name and first line of a function. The result for a file is cached.
+    """
     # All of a file, for what a function is compiled to depends on what its module imports.
     tree = ast.parse(''.join(linecache.getlines(file)))
     as_written = compile(tree, file, 'exec', dont_inherit=True)
@@ -91,7 +101,7 @@ def _codes(file: str) -> tuple[_Codes, _Codes]:
 
 
 def _functions(code: types.CodeType) -> Iterator[tuple[tuple[str, int], types.CodeType]]:
-    """Yield the functions that a code defines, by name and first line."""
+    """Yield ((name, first line), code) of all functions defined in ``code``, nested ones too."""
     for constant in code.co_consts:
         if isinstance(constant, types.CodeType):
             yield (constant.co_name, constant.co_firstlineno), constant
@@ -108,14 +118,14 @@ _OPERATORS = {
 
 
 class _Changes(ast.NodeTransformer):
-    """The changes to the source of a kernel: loops that look, and arithmetic that agrees."""
+    """Changes to a kernel's source: loops check for interruption; arithmetic is machine code's."""
 
     def visit_For(self, node: ast.For) -> ast.AST:
-        """Look for an interruption in each turn."""
+        """Insert a check for interruption at the start of each turn of the loop."""
         return self._looking(node)
 
     def visit_While(self, node: ast.While) -> ast.AST:
-        """Look for an interruption in each turn."""
+        """Insert a check for interruption at the start of each turn of the loop."""
         return self._looking(node)
 
     def _looking(self, loop: Any) -> ast.AST:
@@ -124,7 +134,11 @@ class _Changes(ast.NodeTransformer):
         return _located(loop, loop)
 
     def visit_BinOp(self, node: ast.BinOp) -> ast.AST:
-        """Replace an operator, except where a constant on its right makes that needless."""
+        """
+        Replace an operator in ``_OPERATORS`` by a call.
+
+        A division or modulo by a constant other than 0 stays, since Python agrees there.
+        """
         self.generic_visit(node)
         name = _OPERATORS.get(type(node.op))
         constant = node.right.value if isinstance(node.right, ast.Constant) else None
@@ -138,7 +152,12 @@ class _Changes(ast.NodeTransformer):
         return _located(call, node)
 
     def visit_AugAssign(self, node: ast.AugAssign) -> ast.AST:
-        """Replace an operator; what is assigned to is an expression without side effects."""
+        """
+        Replace an operator in ``_OPERATORS`` by a call that works in place.
+
+        An operation by a constant other than 0 stays. The target is evaluated twice, so that
+        kernels must have targets without side effects.
+        """
         self.generic_visit(node)
         name = _OPERATORS.get(type(node.op))
         if name is None or (isinstance(node.value, ast.Constant) and node.value.value):
@@ -149,7 +168,7 @@ class _Changes(ast.NodeTransformer):
         return _located(ast.Assign(targets=[node.target], value=value), node)
 
     def visit_Call(self, node: ast.Call) -> ast.AST:
-        """Replace ``array.sum()``."""
+        """Replace ``array.sum()`` without arguments by ``left_sum(array)``."""
         self.generic_visit(node)
         method = node.func
         if isinstance(method, ast.Attribute) and method.attr == 'sum':
@@ -159,7 +178,7 @@ class _Changes(ast.NodeTransformer):
 
 
 def _located(new: Any, old: ast.AST) -> ast.AST:
-    """Return a new node that tracebacks show where the old one was."""
+    """Return node ``new`` with the line and column of node ``old``, for tracebacks."""
     return ast.fix_missing_locations(ast.copy_location(new, old))
 
 

@@ -2,14 +2,15 @@
 Interruption of interpreted kernels: how a time limit or a cancellation ends them.
 
 A compiled kernel works in batches so short that its caller looks at the clock between them. The
-same batch interpreted takes hundreds of times longer. So interpreted kernels ask by themselves:
+same batch interpreted takes hundreds of times longer. So interpreted kernels check a condition by
+themselves:
 
 >>> with interruptible(lambda: working_time() > deadline or cancel.is_set()):
 ...     search.advance(n)  # raises Interrupted soon after the condition holds
 
-The condition belongs to the thread that set it. Blocks may be nested: an inner one asks its own
-condition and those of the blocks around it. A kernel that was interrupted leaves the arrays that
-it writes to half written: what the caller may still use is what it had before that call.
+The condition belongs to the thread that set it. Blocks may be nested: kernels in the inner block
+check its condition and those of the blocks around it. A kernel that was interrupted leaves the
+arrays that it writes half written: the caller may still use only what it had before that call.
 """
 
 from collections.abc import Callable, Iterator
@@ -19,16 +20,16 @@ import time
 
 from hnr_planner.core.errors import Interrupted
 
-#: Shortest time [s] between two looks at the condition.
+#: Shortest time [s] between two checks of the condition.
 CHECK_INTERVAL = 1e-3
 
 
 class _Condition(threading.local):
-    """The condition of one thread."""
+    """The condition on which one thread's interpreted kernels are interrupted."""
 
     #: Whether work is to end; None outside of every ``interruptible`` block.
     stop: Callable[[], bool] | None = None
-    #: ``time.perf_counter()`` from which the condition is looked at again.
+    #: Value of ``time.perf_counter()`` from which the condition is checked again.
     next_check: float = 0.0
 
 
@@ -38,12 +39,15 @@ _condition = _Condition()
 @contextmanager
 def interruptible(stop: Callable[[], bool]) -> Iterator[None]:
     """
-    Let interpreted kernels of this thread raise Interrupted once ``stop()`` is true.
+    Let interpreted kernels of this thread raise Interrupted once ``stop()`` is true in a block.
+
+    Compiled kernels do not check the condition.
 
     Parameters
     ----------
     stop : callable
-        Called about every millisecond, between steps of interpreted kernels, in this thread.
+        Called without arguments, in this thread, at most every millisecond, by the loops of
+        interpreted kernels.
 
     """
     outer = _condition.stop
@@ -56,7 +60,12 @@ def interruptible(stop: Callable[[], bool]) -> Iterator[None]:
 
 
 def check() -> None:
-    """Raise Interrupted if the condition of this thread holds; look at it every millisecond."""
+    """
+    Raise Interrupted if the condition of this thread holds.
+
+    Evaluate the condition at most every ``CHECK_INTERVAL`` seconds; outside of every
+    ``interruptible`` block, do nothing.
+    """
     stop = _condition.stop
     if stop is None:
         return

@@ -1,17 +1,18 @@
 """
-Kernels: functions that run as machine code, or interpreted until there is some.
+Kernels: functions that run as machine code, or interpreted until machine code is there.
 
-``@kernel`` makes a function one. Kernels that call each other are compiled together by numba:
-without the GIL, so that a node stays responsive while it plans, and into a cache on disk, so that
-a machine compiles once. Where Python calls a kernel, the call takes the best tier there is:
+The decorator ``@kernel`` makes a function a kernel. Kernels that call each other are compiled
+together by numba: without the GIL, so that a node stays responsive while it plans, and into a
+cache on disk, so that a machine compiles once. When Python calls a kernel, the call runs the first
+of these that exists:
 
 1. machine code for these types of arguments, if it is loaded;
 2. else machine code from the cache, loaded now;
 3. else the interpreted form (``interpreted_form``), and a child process is asked to compile
-   (``compilation``). When that is done, the next call finds it.
+   (``compilation``). When the machine code is loaded, the next call runs it.
 
-Both tiers give the same result to the last bit, so nobody needs to know which one answered.
-``modes`` has the alternatives: to wait for the compiler, or never to compile.
+Machine code and the interpreted form give the same result to the last bit. The list above is the
+mode ``auto``; module ``modes`` has the others: wait for the compiler, or never compile.
 """
 
 from collections.abc import Callable
@@ -46,14 +47,14 @@ OPTIONS: dict[str, Any] = {
     'error_model': 'numpy',
     'no_cfunc_wrapper': True,
 }
-#: For a kernel whose code is put in wherever a kernel calls it.
+#: Further options of an inlined kernel: its code is copied into every kernel that calls it.
 INLINED: Any = {'forceinline': True}
 
 _log = logging.getLogger('hnr_planner')
 
 
 class _OfThread(threading.local):
-    """What is known of the calls of one thread."""
+    """Record of the kernel calls of one thread, and whether they ask for machine code."""
 
     #: Number of calls that ran interpreted.
     interpreted: int = 0
@@ -67,13 +68,13 @@ _called: dict[tuple['Kernel', Signature], None] = {}
 
 
 class _Cache(FunctionCache):
-    """The cache of a kernel: where the disk is full, machine code is used, but not kept."""
+    """The cache of one kernel on disk; machine code that cannot be written is still used."""
 
-    #: Why machine code could not be kept.
+    #: The last error in writing machine code; None if there was none.
     not_kept: OSError | None = None
 
     def save_overload(self, sig: Any, data: Any) -> None:
-        """Keep machine code, or log that it cannot be kept."""
+        """Write machine code to disk; if that fails, keep the error, and log the first one."""
         try:
             super().save_overload(sig, data)
         except OSError as error:
@@ -86,8 +87,8 @@ class Kernel(CPUDispatcher):
     """
     A function that numba compiles for each signature, and that runs interpreted until then.
 
-    Numba's dispatcher finds machine code by the types of the arguments, in C: such a call costs
-    nothing more. Only what happens where there is none is defined here.
+    Numba's dispatcher finds loaded machine code by the types of the arguments, in C, so that such
+    a call costs no more than with numba alone. This class defines what happens if none is loaded.
     """
 
     def __init__(self, *arguments: Any, **options: Any) -> None:
@@ -96,7 +97,12 @@ class Kernel(CPUDispatcher):
         self._missing: set[Signature] = set()
 
     def _compile_for_args(self, *arguments: Any, **_keywords: Any) -> Callable[..., Any]:
-        """Return what numba's dispatcher calls with these arguments, for which it has nothing."""
+        """
+        Return what numba's dispatcher calls if it has no machine code loaded for the arguments.
+
+        That is machine code, compiled now in the mode ``compiled`` or loaded from the cache in the
+        mode ``auto``; else the interpreted form.
+        """
         wanted = mode()
         signature = None if wanted is Mode.INTERPRETED else _signature(arguments)
         if signature is not None:
@@ -117,30 +123,40 @@ class Kernel(CPUDispatcher):
         return self.interpreted
 
     def enable_caching(self) -> None:
-        """Keep machine code in the cache folder."""
+        """Read and write the kernel's machine code in the cache folder from now on."""
         self._cache = _Cache(self.py_func)
 
     @cached_property
     def part(self) -> Any:
-        """The kernel as other kernels call it."""
+        """The ``Part`` that compiles this kernel for calls by other kernels."""
         return Part(self.py_func, self.targetoptions)
 
     def get_call_template(self, args: Any, kws: Any) -> Any:
-        """Type a call by another kernel: numba would compile it anew for each constant."""
+        """
+        Return numba's template for a call by another kernel.
+
+        Constants among the arguments count as values of their type, since numba would compile the
+        kernel anew for each constant.
+        """
         plain = {name: types.unliteral(kind) for name, kind in kws.items()}
         return self.part.get_call_template([types.unliteral(kind) for kind in args], plain)
 
     @property
     def is_compiling(self) -> Any:
-        """Whether a call of this kernel, met in compilation, is one by itself."""
+        """Whether this kernel or its part is being compiled, so that a call is recursive."""
         return self._compiling_counter or self.part.is_compiling
 
     def get_overload(self, sig: Any) -> Any:
-        """Return the key of the code that another kernel calls."""
+        """Return numba's key of the code that another kernel calls with signature ``sig``."""
         return self.part.get_overload(sig)
 
     def load(self, signature: Signature) -> bool:
-        """Load machine code from the cache; return whether it is loaded. Never compile."""
+        """
+        Load machine code for ``signature`` from the cache, but never compile.
+
+        Return whether it is loaded now. A cached file that cannot be read counts as missing, with
+        a warning in the log.
+        """
         with global_compiler_lock:
             if signature in self.overloads:
                 return True
@@ -157,15 +173,15 @@ class Kernel(CPUDispatcher):
 
     def ensure_compiled(self, signature: Signature) -> bool:
         """
-        Load machine code, or compile it into the cache; return whether it was compiled here.
+        Load machine code for ``signature``, or compile it into the cache if it is missing.
 
-        Processes that do this at the same time compile once: who waited for another finds what
-        that one made.
+        Return whether it was compiled by this call. Of several processes that do this at the same
+        time one compiles; the others wait for it, and load what it made.
 
         Raises
         ------
         OSError
-            When it was compiled, but cannot be kept.
+            When it was compiled, but could not be written into the cache.
 
         """
         _called[self, signature] = None
@@ -181,11 +197,11 @@ class Kernel(CPUDispatcher):
 
     @cached_property
     def interpreted_form(self) -> Callable[..., Any]:
-        """The interpreted form, for other interpreted forms to call."""
+        """The interpreted form of this kernel, which other interpreted forms call."""
         return interpreted_form(self.py_func)  # type: ignore[arg-type]
 
     def interpreted(self, *arguments: Any, **_keywords: Any) -> Any:
-        """Run the interpreted form, and return what machine code would."""
+        """Run the interpreted form in any mode; return what machine code would return."""
         _of_thread.interpreted += 1
         given = [value.value if isinstance(value, OmittedArg) else value for value in arguments]
         with np.errstate(all='ignore'):  # as machine code does
@@ -193,7 +209,7 @@ class Kernel(CPUDispatcher):
 
 
 def _signature(arguments: tuple[Any, ...]) -> Signature | None:
-    """Return the types of arguments; None where numba has none for one of them."""
+    """Return numba's types of the arguments; None if one of them has no type in numba."""
     try:
         return tuple(
             types.Omitted(value.value) if isinstance(value, OmittedArg) else typeof(value)
@@ -204,7 +220,7 @@ def _signature(arguments: tuple[Any, ...]) -> Signature | None:
 
 
 def kernel(function: Callable[..., Any], **more: Any) -> Kernel:
-    """Make a function a kernel; ``more`` are further options of numba's."""
+    """Return ``function`` as a kernel; ``more`` are options of numba beyond ``OPTIONS``."""
     numba_config: Any = config
     before = numba_config.CACHE_DIR
     numba_config.CACHE_DIR = str(cache_folder())
@@ -218,39 +234,41 @@ def kernel(function: Callable[..., Any], **more: Any) -> Kernel:
 
 def inlined(function: Callable[..., Any]) -> Kernel:
     """
-    Make a function a kernel whose code is put in wherever a kernel calls it.
+    Return ``function`` as a kernel whose code is copied into every kernel that calls it.
 
-    A call hands on every field of every array: for the small parts of an inner loop that is more
-    work than they do themselves.
+    A call hands on every field of every array: for a small function in an inner loop that is more
+    work than the function does itself.
     """
     return kernel(function, **INLINED)
 
 
 def another(original: Kernel) -> Kernel:
-    """Return another kernel of the same function, which shares the machine code in the cache."""
+    """Return a further kernel of the function of ``original``, with the same cache on disk."""
     is_inlined = original.targetoptions.get('forceinline', False)
     return kernel(original.py_func, **(INLINED if is_inlined else {}))
 
 
 def interpreted(function: Any) -> Callable[..., Any]:
-    """Return a kernel, or a dispatched function, as one that always runs interpreted."""
+    """Return a callable that runs a kernel or dispatched function interpreted in any mode."""
     return function.interpreted
 
 
 def interpreted_calls() -> int:
     """
-    Return how many calls of kernels this thread has run interpreted so far.
+    Return how many calls of kernels from Python this thread has run interpreted so far.
 
-    Compare before and after a piece of work: where it has not changed, machine code did it all.
+    If the number is the same before and after a piece of work, the work ran as machine code alone.
     """
     return _of_thread.interpreted
 
 
 def calls_of(work: Callable[[], None], tier: Mode = Mode.AUTO) -> list[tuple[Kernel, Signature]]:
     """
-    Return which machine code some work needs: do it, interpreted where there is none.
+    Run ``work``, and return the kernels and signatures that Python has called in this process.
 
-    Nobody is asked to compile. What this process has called before is in the list too.
+    They name the machine code that the work needs. ``work`` runs in the mode ``tier``; in the mode
+    ``auto``, calls without machine code run interpreted and do not ask for it. Calls before
+    ``work`` are in the list too.
     """
     _of_thread.asks = False
     try:

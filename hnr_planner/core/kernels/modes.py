@@ -1,8 +1,9 @@
 """
-Modes: what happens where a kernel has no machine code yet.
+Modes: what happens when Python calls a kernel that has no machine code loaded.
 
-``auto`` (the default): the call runs interpreted, and a child process compiles meanwhile.
-``compiled``: the call waits until the kernel is compiled in this process, as in tests.
+``auto`` (the default): the call loads machine code from the cache; if there is none, it runs
+interpreted, and a child process compiles meanwhile.
+``compiled``: the call waits until the kernel is loaded or compiled in this process, as in tests.
 ``interpreted``: nothing is ever compiled or loaded.
 
 The environment variable ``HNR_PLANNER_KERNELS`` sets the mode of a process; with
@@ -24,7 +25,7 @@ VARIABLE = 'HNR_PLANNER_KERNELS'
 
 
 class Mode(Enum):
-    """What to do where a kernel has no machine code yet."""
+    """What a call of a kernel without loaded machine code does; see this module's docstring."""
 
     AUTO = 'auto'
     COMPILED = 'compiled'
@@ -32,13 +33,13 @@ class Mode(Enum):
 
 
 class _OfThread(threading.local):
-    """The mode that one thread has chosen for itself."""
+    """The mode that one thread has set for itself; None if the process's mode applies."""
 
     mode: Mode | None = None
 
 
 def _checked(name: str, wanted: str) -> Mode:
-    """Return the mode of a name, or raise RequestError."""
+    """Return the mode called ``wanted``, or raise a RequestError about the argument ``name``."""
     return Mode(check_choice(name, wanted, tuple(mode.value for mode in Mode)))
 
 
@@ -48,7 +49,12 @@ _of_thread = _OfThread()
 
 
 def mode() -> Mode:
-    """Return the mode of this thread."""
+    """
+    Return the mode that applies in this thread.
+
+    It is ``INTERPRETED`` if numba is disabled, else the thread's own mode if it has set one, else
+    the mode of the process.
+    """
     if _numba_config.DISABLE_JIT:
         return Mode.INTERPRETED
     return _of_thread.mode or _of_process
@@ -56,14 +62,14 @@ def mode() -> Mode:
 
 def set_mode(wanted: Mode | str) -> None:
     """
-    Set the mode of this process.
+    Set the mode of this process, for threads that have not set their own.
 
-    Machine code that is loaded already stays in use.
+    Machine code that is loaded already stays in use in every mode.
 
     Raises
     ------
     RequestError
-        When there is no such mode.
+        When ``wanted`` is not the name of a mode.
 
     """
     global _of_process
@@ -72,7 +78,7 @@ def set_mode(wanted: Mode | str) -> None:
 
 @contextmanager
 def mode_of_thread(wanted: Mode) -> Iterator[None]:
-    """Set the mode of this thread within a block."""
+    """Set the mode of this thread within a block, and restore the mode before at its end."""
     before = _of_thread.mode
     _of_thread.mode = wanted
     try:
@@ -83,6 +89,10 @@ def mode_of_thread(wanted: Mode) -> Iterator[None]:
 
 @contextmanager
 def waiting_for_machine_code() -> Iterator[None]:
-    """Wait for the compiler within a block in which interpreted kernels would take far longer."""
+    """
+    Let calls of this thread wait for the compiler within a block, if the mode is ``auto``.
+
+    It is for work that would take far longer with interpreted kernels. Other modes stay.
+    """
     with mode_of_thread(Mode.COMPILED if mode() is Mode.AUTO else mode()):
         yield

@@ -1,9 +1,10 @@
 """
-Needs: machine code that somebody asks for, named so that another process finds it.
+Needs: requests for machine code, which name a kernel so that another process finds it.
 
 A need is a kernel and the types of its arguments. A workload is a function that stands for a use
-of the package (finding paths, say): running it once tells which machine code that use needs. What
-it told is kept in the cache folder, so that the next process knows without running it.
+of the package (finding paths, say): running it once shows which machine code that use needs. The
+list of these needs is kept in the cache folder, so that the next process need not run the
+workload.
 """
 
 from collections.abc import Iterable
@@ -18,7 +19,7 @@ from hnr_planner.core.kernels.cache_folder import cache_folder
 
 
 class Need(NamedTuple):
-    """Machine code for one signature of one kernel."""
+    """A request for machine code of one kernel for one signature (the types of its arguments)."""
 
     #: Module and qualified name of the kernel.
     module: str
@@ -27,24 +28,32 @@ class Need(NamedTuple):
     types: bytes
 
     def resolve(self) -> tuple[Any, Any]:
-        """Return the kernel and the signature; import what is not imported yet."""
+        """Return the kernel and the signature; import the kernel's module if necessary."""
         kernel = operator.attrgetter(self.name)(importlib.import_module(self.module))
         return kernel, pickle.loads(self.types)
 
 
 class Workload(NamedTuple):
-    """A function without arguments that makes the calls of a use, by its name."""
+    """
+    A function that makes the kernel calls of one use of the package, given by module and name.
+
+    The function takes no arguments.
+    """
 
     module: str
     name: str
 
     def run(self) -> None:
-        """Make the calls."""
+        """Import the function's module if necessary, and call the function."""
         getattr(importlib.import_module(self.module), self.name)()
 
 
 def need_of(kernel: Any, signature: Any) -> Need | None:
-    """Return a need; None where another process would not find the kernel or its types."""
+    """
+    Return the need for machine code of ``kernel`` for ``signature``.
+
+    None if another process could not find the kernel by its name, or could not unpickle the types.
+    """
     function = kernel.py_func
     try:
         need = Need(function.__module__, function.__qualname__, pickle.dumps(signature))
@@ -55,7 +64,7 @@ def need_of(kernel: Any, signature: Any) -> Need | None:
 
 
 def known_needs(workload: Workload) -> list[Need] | None:
-    """Return what a workload was found to need; None if it never ran with these sources."""
+    """Return the needs that ``keep_needs`` has kept for a workload; None if there are none."""
     try:
         needs: list[Need] = pickle.loads(_file(workload).read_bytes())
     except (OSError, EOFError, pickle.UnpicklingError):
@@ -64,7 +73,7 @@ def known_needs(workload: Workload) -> list[Need] | None:
 
 
 def keep_needs(workload: Workload, needs: Iterable[Need]) -> None:
-    """Keep what a workload was found to need, where the cache folder can be written."""
+    """Write the needs of a workload to the cache folder; do nothing if that fails."""
     file = _file(workload)
     temporary = file.with_suffix(f'.{uuid.uuid4().hex[:8]}')
     try:

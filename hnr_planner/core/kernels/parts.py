@@ -1,10 +1,10 @@
 """
 Parts: kernels as other kernels call them.
 
-A kernel that Python calls is a root. What it calls are its parts: they become LLVM's intermediate
-code, which is linked into the root and optimised there, as a whole and once. Numba on its own
-would optimise every part, make machine code of it that nothing ever calls, link the result into
-each caller, and do the same again there: that is twice the work for the same machine code.
+A kernel that Python calls is a root. The kernels that a root calls are its parts: they become
+LLVM's intermediate code, which is linked into the root and optimised there, as a whole and once.
+Numba on its own would optimise every part, make machine code of the part that nothing ever calls,
+link the result into each caller, and optimise it again there: twice the work for the same code.
 
 This is a compiler pipeline in numba's sense, and a code library that stays intermediate code.
 """
@@ -19,25 +19,25 @@ from numba.core.typed_passes import NativeLowering
 
 
 class PartLibrary(JITCodeLibrary):
-    """The intermediate code of a part, as it was lowered."""
+    """The code library of one part: LLVM's intermediate code, never optimised on its own."""
 
     def __init__(self, codegen: Any, name: str) -> None:
         super().__init__(codegen, name)
-        #: What has to be linked into a root that calls the part: this, and all that it calls.
+        #: Libraries to link into a root that calls the part: this one, and those of its callees.
         self.needed: dict[Any, None] = {self: None}
 
     def add_linking_library(self, library: Any) -> None:
-        """Take note of what the root has to link."""
+        """Add ``library`` to those that a root has to link, instead of linking it here."""
         self.needed[library] = None
 
     def finalize(self) -> None:
-        """Stay as it is: neither link, nor optimise, nor make machine code."""
+        """Mark the library as final, but neither link, nor optimise, nor make machine code."""
         self._finalized = True
 
 
 @register_pass(mutates_CFG=False, analysis_only=True)
 class _OfferToRoots(AnalysisPass):
-    """Register the code of a part for the calls of other kernels."""
+    """Compiler pass that registers the code of a part for calls by other kernels."""
 
     _name = 'hnr_planner_offer_to_roots'
 
@@ -45,7 +45,12 @@ class _OfferToRoots(AnalysisPass):
         super().__init__()
 
     def run_pass(self, state: Any) -> bool:
-        """Give the part a key in the place of a function that Python could call."""
+        """
+        Register the part under a new key, by which calls of other kernels find its code.
+
+        The key takes the place of the function that Python could call. Return False: the code is
+        not changed.
+        """
         key = object()
         lowered = state['cr']
         state.targetctx.insert_user_function(key, lowered.fndesc, tuple(state.library.needed))
@@ -54,10 +59,10 @@ class _OfferToRoots(AnalysisPass):
 
 
 class _PartCompiler(CompilerBase):
-    """Numba's pipeline, up to intermediate code."""
+    """Numba's compiler, which ends with intermediate code instead of machine code."""
 
     def define_pipelines(self) -> list[Any]:
-        """Return the pipeline for machine code, with another end."""
+        """Return numba's nopython pipeline, with the pass ``_OfferToRoots`` after lowering."""
         state: Any = self.state
         state.flags.no_compile = True
         state.library = PartLibrary(state.targetctx.codegen(), state.func_id.func_qualname)
@@ -68,12 +73,12 @@ class _PartCompiler(CompilerBase):
 
 
 class Part(CPUDispatcher):
-    """What compiles a function as a part, for each signature."""
+    """A dispatcher that compiles a function as a part, once for each signature."""
 
     def __init__(self, function: Any, options: dict[str, Any]) -> None:
         without_wrapper = {**options, 'no_cpython_wrapper': True}
         super().__init__(function, targetoptions=without_wrapper, pipeline_class=_PartCompiler)
 
     def add_overload(self, code: Any) -> None:
-        """Keep the code for other kernels; there is nothing that Python could call."""
+        """Store compiled code for calls by other kernels; Python cannot call it."""
         self.overloads[tuple(code.signature.args)] = code

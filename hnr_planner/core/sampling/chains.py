@@ -1,7 +1,8 @@
 """
 Chains: runs of a random walk that can be stopped, saved and resumed.
 
-The state of a chain is its point, its random stream, the cache of the space, and counters.
+The state of a chain is its point, its random stream, the numbers that the space caches for the
+point, and counters of its steps.
 ``begin_chains`` makes the states; ``walk_on`` is a pure function from states to draws and new
 states, so that two runs of half the length equal one long run to the last bit. States are arrays
 only, and can be saved to a file:
@@ -45,18 +46,19 @@ STUCK_AFTER = 1000
 
 class Chain(NamedTuple):
     """
-    State of one chain; a run changes its arrays in place.
+    State of one chain; ``run_chain`` changes the arrays in place.
 
     Attributes
     ----------
     x : (dim,)
         Position in the space's kernel frame.
     memory : (k,)
-        Numbers that the space caches for this position.
+        Numbers that the space caches for position ``x``; k depends on the space.
     rng : (4,) uint64
-        Random stream.
+        State of the random stream that the chain draws from.
     counts : (N_COUNTS,) int64
-        Counters: the columns named in ``walks``.
+        Counters, indexed by ``STEPS``, ``MOVES``, ``ZERO_CHORDS``, ``REDRAWS`` and ``STILL`` of
+        module ``walks``.
 
     """
 
@@ -67,21 +69,26 @@ class Chain(NamedTuple):
 
 
 def new_chain(space: Space, x: Floats, rng: Stream) -> Chain:
-    """Return a chain at ``x`` (dim,), a free point in the kernel frame; a run changes ``x``."""
+    """
+    Return a chain at ``x`` (dim,), a free point in the kernel frame, with all counters 0.
+
+    The chain holds ``x`` and ``rng`` themselves, not copies: ``run_chain`` changes both arrays.
+    """
     memory = np.zeros(memory_size(space.data, space.dim))
     return Chain(x, memory, rng, np.zeros(N_COUNTS, dtype=np.int64))
 
 
 def run_chain(space: Space, walk: Any, chain: Chain, thin: int, draws: Floats) -> None:
     """
-    Run a chain of a compiled walk, and write every ``thin``-th point into ``draws``.
+    Run a chain for ``n_draws * thin`` steps, and write every ``thin``-th point into ``draws``.
 
-    ``draws`` is (n_draws, dim), in the kernel frame.
+    ``walk`` is the compiled form of a walk, ``draws`` is (n_draws, dim), in the kernel frame.
 
     Raises
     ------
     StuckError
-        When the chain has not moved for ``STUCK_AFTER`` steps.
+        When the chain has not moved for ``STUCK_AFTER`` consecutive steps, counted over all its
+        runs.
 
     """
     u = np.zeros(space.dim)
@@ -101,7 +108,12 @@ def run_chain(space: Space, walk: Any, chain: Chain, thin: int, draws: Floats) -
 
 @kernel
 def take_steps(space, walk, chain, u, thin, draws):
-    """Fill ``draws`` (n_draws, dim), or return when stuck; ``u`` (dim,) is a work array, zero."""
+    """
+    Take ``n_draws * thin`` steps, and write every ``thin``-th point into ``draws``.
+
+    Return early once the chain has not moved for ``STUCK_AFTER`` steps: later rows of ``draws``
+    (n_draws, dim) are then left unwritten. ``u`` (dim,) is a work array that has to be zero.
+    """
     space, chain = borrowed(space), borrowed(chain)
     u, draws = borrowed(u), borrowed(draws)
     x, counts = chain.x, chain.counts
@@ -125,16 +137,16 @@ def take_steps(space, walk, chain, u, thin, draws):
 @dataclass(frozen=True, eq=False)
 class Chains:
     """
-    States of several chains between two steps, all in the space that they were begun in.
+    States of several chains between two steps, valid in the space they were begun in alone.
 
     Attributes
     ----------
     points : (n_chains, dim)
         Positions in the space's kernel frame.
     memory : (n_chains, k)
-        Numbers that the space caches for these positions.
+        Numbers that the space caches for the position of each chain; k depends on the space.
     streams : (n_chains, 4) uint64
-        Random streams.
+        State of the random stream of each chain.
     counts : (n_chains, 5) int64
         Counters: steps, moves, zero chords, redraws, and steps since the last move.
 
@@ -146,27 +158,27 @@ class Chains:
     counts: NDArray[np.int64]
 
     def chain(self, k: int) -> Chain:
-        """Return a view of chain ``k``."""
+        """Return the state of chain ``k`` as views of these arrays, not copies."""
         return Chain(self.points[k], self.memory[k], self.streams[k], self.counts[k])
 
     @property
     def steps(self) -> NDArray[np.int64]:
-        """Number of steps taken so far, of each chain (n_chains,)."""
+        """Number of steps that each chain has taken since it was begun: (n_chains,)."""
         return self.counts[:, STEPS]
 
     @property
     def moves(self) -> NDArray[np.int64]:
-        """Number of steps that moved each chain (n_chains,): accepted steps of a ball walk."""
+        """Number of steps that moved each chain (n_chains,); of a ball walk, those accepted."""
         return self.counts[:, MOVES]
 
     @property
     def zero_chords(self) -> NDArray[np.int64]:
-        """Number of steps of each chain (n_chains,) with a chord below the space's zero length."""
+        """Number of steps of each chain (n_chains,) on a chord shorter than the zero length."""
         return self.counts[:, ZERO_CHORDS]
 
     @property
     def redraws(self) -> NDArray[np.int64]:
-        """Number of draws of each chain (n_chains,) rejected for rounding onto the boundary."""
+        """Number of draws of each chain (n_chains,) repeated for rounding onto the boundary."""
         return self.counts[:, REDRAWS]
 
 
@@ -174,19 +186,19 @@ def begin_chains(
     space: Space, start: ArrayLike, *, n_chains: int = 1, seed: Seed = None
 ) -> Chains:
     """
-    Make chains at their starts, each with its own random stream.
+    Return chains at their starts, before the first step, each with its own random stream.
 
     Parameters
     ----------
     space : Space
         The set to draw from.
     start : (dim,) or (n_chains, dim)
-        One free point for all chains, or one for each chain; ``n_chains`` is optional then.
+        One free point for all chains, or one for each chain, in the caller's frame.
     n_chains : int
-        Number of independent chains.
+        Number of independent chains; may be left out when ``start`` has a row for each chain.
     seed : int, numpy.random.SeedSequence, numpy.random.Generator or None
-        Fresh when left out. A generator is advanced. The first chains are the same however many
-        there are.
+        Source of the random streams; a fresh seed is drawn when left out. A generator is
+        advanced. Chain k has the same stream for every ``n_chains`` > k.
 
     Raises
     ------
@@ -227,7 +239,7 @@ def walk_on(
     walk : str or Walk
         A name in ``WALKS``, or a walk with its settings. It may differ from earlier runs.
     thin : int
-        Steps for each point kept; the last one is kept.
+        Number of steps for each point kept: the point after the last of these steps.
 
     Returns
     -------
@@ -239,9 +251,10 @@ def walk_on(
     Raises
     ------
     RequestError
-        When an argument is malformed, or the chains are not of this space.
+        When an argument is malformed, or the arrays of the chains do not have the shapes that
+        belong to this space.
     StuckError
-        When a chain has not moved for 1000 steps.
+        When a chain has not moved for ``STUCK_AFTER`` (1000) consecutive steps.
 
     """
     n_draws, thin = check_count('n_draws', n_draws, 0), check_count('thin', thin, 1)

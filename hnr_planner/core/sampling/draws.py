@@ -2,8 +2,9 @@
 Random draws: a direction, a point of a ball, a point of a chord, a step of Hit-and-Run.
 
 These kernels serve planners, which step from any point: given a compiled space, a free point ``x``
-and a random stream, a step writes the next point into ``y``. It returns the number of redraws:
-draws that rounded onto the boundary and were drawn again, so that ``y`` is always a free point.
+and a random stream, a step writes the next point into ``y``. The step returns the number of
+redraws: draws that rounded onto the boundary and were drawn again, so that ``y`` is always a free
+point. After ``REDRAWS_MAX`` redraws ``y`` is ``x``. All points are in the kernel frame.
 Steps of chains, which start from the point before and reuse its cache, are in module ``walks``.
 """
 
@@ -21,7 +22,11 @@ REDRAWS_MAX = 100
 
 @kernel
 def hit_and_run_step(space, x, rng, y):
-    """Write a step of Hit-and-Run from ``x`` (dim,) into ``y``; return the number of redraws."""
+    """
+    Write the end of a step of Hit-and-Run from ``x`` (dim,) into ``y`` (dim,).
+
+    Return the number of redraws; if that is ``REDRAWS_MAX``, ``y`` is ``x``.
+    """
     u = np.empty(len(x))
     draw_direction(rng, u)
     return draw_on_chord(space, x, u, rng, y)
@@ -29,7 +34,7 @@ def hit_and_run_step(space, x, rng, y):
 
 @inlined
 def draw_direction(rng, u):
-    """Draw ``u`` (dim,) uniformly from the unit sphere."""
+    """Write a direction drawn uniformly from the unit sphere into ``u`` (dim,)."""
     squared = 0.0
     while squared == 0.0:
         squared = draw_normals(rng, u)
@@ -40,7 +45,7 @@ def draw_direction(rng, u):
 
 @inlined
 def draw_in_ball(radius, rng, u):
-    """Draw ``u`` (dim,) uniformly from the ball of this radius around the origin."""
+    """Write a uniform point of the ball of this radius around the origin into ``u`` (dim,)."""
     draw_direction(rng, u)
     length = radius * uniform(rng) ** (1.0 / len(u))
     for i in range(len(u)):
@@ -49,14 +54,23 @@ def draw_in_ball(radius, rng, u):
 
 @kernel
 def draw_on_chord(space, x, u, rng, y):
-    """Draw ``y`` uniformly from the chord of ``x`` along ``u``; return the number of redraws."""
+    """
+    Write a uniform point of the chord through ``x`` (dim,) along ``u`` (dim,) into ``y`` (dim,).
+
+    Return the number of redraws; if that is ``REDRAWS_MAX``, ``y`` is ``x``.
+    """
     lower, upper = chord(space, x, u, -u)
     return draw_between(space, x, u, lower, upper, rng, y)
 
 
 @kernel
 def draw_between(space, x, u, lower, upper, rng, y):
-    """Draw ``y = x + s u``, s uniform in (lower, upper); return the number of redraws."""
+    """
+    Write ``x + s u`` into ``y`` (dim,), with s uniform in (lower, upper) and the point free.
+
+    A point that is not free, or s on an end, is drawn again. Return the number of redraws; after
+    ``REDRAWS_MAX`` redraws ``y`` is ``x``.
+    """
     for redraws in range(REDRAWS_MAX):
         s = lower + (upper - lower) * uniform(rng)
         for i in range(len(x)):

@@ -1,9 +1,10 @@
 """
 Uniform points of all free space of a grid, over all its connected components.
 
-A walk never leaves its component. So one chain runs in each component, started from the uniform
-law, and every draw advances one of them: the chain of a component chosen with probability
-proportional to its area. Every draw, the first included, is uniform on all free space.
+A walk never leaves its component. So one chain runs in each component, from a start that is
+uniform on the component, and every draw advances one of these chains: that of a component chosen
+with probability proportional to the component's area. Every draw, the first included, is uniform
+on all free space.
 """
 
 from concurrent.futures import ThreadPoolExecutor
@@ -45,7 +46,12 @@ class FreeSpaceDraws(NamedTuple):
 
     @property
     def previous(self) -> NDArray[np.intp]:
-        """Index (n_chains, n_draws) of the draw before in the same component; -1 for the first."""
+        """
+        Index of each draw's predecessor: the last earlier draw in the same component.
+
+        (n_chains, n_draws), index into the draws of the same chain; -1 for the first draw in a
+        component.
+        """
         previous = np.full(self.components.shape, -1)
         for chain, components in enumerate(self.components):
             for draws in _draws_by_component(components):
@@ -85,7 +91,7 @@ def sample_free_space(
     seed : int, numpy.random.SeedSequence, numpy.random.Generator or None
         Fresh when left out. A generator is advanced, so that the next call gives other draws.
     cancel : Event, optional
-        Ends the work when it is set.
+        Ends the work when the event is set, from any thread.
 
     Raises
     ------
@@ -94,9 +100,9 @@ def sample_free_space(
     SpaceError
         When no cell is free.
     Cancelled
-        When ``cancel`` was set.
+        When ``cancel`` was set before all draws were made.
     StuckError
-        When a chain has not moved for 1000 steps.
+        When the chain of a component has not moved for 1000 consecutive steps.
 
     """
     if not isinstance(space, GridSpace):
@@ -139,15 +145,20 @@ def sample_free_space(
 
 def pick_cells(free: NDArray[np.intp], n_draws: int, rng: np.random.Generator) -> NDArray[np.intp]:
     """
-    Return a uniform cell of ``free`` (k,) for each draw: (n_draws,).
+    Return a cell for each draw, drawn uniformly from the cells ``free`` (k,): (n_draws,).
 
-    It determines the component of the draw, and the first one in a component also its start.
+    Cells are indices into the flattened grid of labels. The cell determines the component of the
+    draw; the first cell in a component is also where the chain of the component starts.
     """
     return free[(rng.random(n_draws) * len(free)).astype(np.intp)]
 
 
 def point_in_cell(cell: int, shape: tuple[int, ...], rng: Stream) -> Floats:
-    """Draw a uniform point (2,) of a cell, in the kernel frame (units of cells)."""
+    """
+    Draw a uniform point (2,) of a cell, in the kernel frame (units of cells).
+
+    ``cell`` is an index into the flattened grid of labels, ``shape`` the shape of that grid.
+    """
     row, column = divmod(int(cell), shape[1])
     # Halfway between the multiples of 2^-32, where no sum rounds onto the edge of the cell.
     x, y = ((math.floor(uniform(rng) * 2**32) + 0.5) / 2**32 for _ in range(2))
@@ -155,6 +166,10 @@ def point_in_cell(cell: int, shape: tuple[int, ...], rng: Stream) -> Floats:
 
 
 def _draws_by_component(components: NDArray[np.int32]) -> list[NDArray[np.intp]]:
-    """Return the indices of the draws in each component that has any, given those of all (n,)."""
+    """
+    Return, for each component that has draws, the indices of these draws in ascending order.
+
+    ``components`` (n,) is the component of every draw of one chain.
+    """
     order = np.argsort(components, kind='stable')
     return np.split(order, 1 + np.flatnonzero(np.diff(components[order])))

@@ -19,28 +19,28 @@ def sample(
     seed: Seed = None,
 ) -> Floats:
     """
-    Draw points from a random walk whose limit is the uniform law on the start's component.
+    Return points of a random walk whose limit is the uniform distribution on its component.
 
-    Every chain has its own thread and random stream, so that the draws do not depend on the
-    number of processors. ``begin_chains`` and ``walk_on`` give the same draws step by step, with
-    counts of steps and moves.
+    A chain stays in the connected component of its start. Every chain has its own random stream,
+    so that the draws do not depend on the number of processors. ``begin_chains`` and ``walk_on``
+    give the same draws in several runs, with counts of steps and moves.
 
     Parameters
     ----------
     space : Space
         The set to draw from.
     start : (dim,) or (n_chains, dim)
-        One free point for all chains, or one for each chain.
+        One free point for all chains, or one for each chain, in the caller's frame.
     n_draws : int
         Number of points kept of each chain.
     walk : 'hit_and_run', 'coordinate_hit_and_run', 'ball_walk' or a walk
         The random walk; one with settings is a value: ``BallWalk(radius=0.1)``.
     n_chains : int
-        Number of independent chains.
+        Number of independent chains; may be left out when ``start`` has a row for each chain.
     burn_in : int
         Steps at the beginning of each chain that are not kept.
     thin : int
-        Steps for each point kept; the last one is kept.
+        Number of steps for each point kept: the point after the last of these steps.
     seed : int, numpy.random.SeedSequence, numpy.random.Generator or None
         Fresh when left out. A generator is advanced, so that the next call gives other draws.
 
@@ -54,7 +54,7 @@ def sample(
     RequestError
         When an argument is malformed, or a start is not free.
     StuckError
-        When a chain has not moved for 1000 steps.
+        When a chain has not moved for 1000 consecutive steps.
 
     """
     burn_in = check_count('burn_in', burn_in, 0)

@@ -7,13 +7,14 @@ its step::
 
     take_step(walk, space, cache, u, rng, counts) -> moved
 
-The kernel may move the chain at ``cache``, and returns whether it did. It depends on its
-arguments only; module ``chains`` calls it in a loop, and counts steps and moves. A further walk is
-a dataclass, a NamedTuple, a kernel registered for that NamedTuple, and a line in ``_WALKS``.
+The kernel may change the chain's position in ``cache``, and returns whether the chain moved. The
+result depends on the arguments only; module ``chains`` calls the kernel in a loop, and counts
+steps and moves. To add a walk, write a dataclass, a NamedTuple, a kernel registered for that
+NamedTuple, and an entry in ``_WALKS``.
 
-The uniform law on the component of the start is stationary for every walk here, and every step is
-reversible: its transition density is symmetric (paper, Section 1; for the ball walk: Lovasz and
-Simonovits, "Random walks in a convex body and an improved volume algorithm", 1993).
+The uniform distribution on the component of the start is stationary for every walk here, and every
+step is reversible: its transition density is symmetric (paper, Section 1; for the ball walk:
+Lovasz and Simonovits, "Random walks in a convex body and an improved volume algorithm", 1993).
 """
 
 from dataclasses import dataclass
@@ -56,7 +57,11 @@ class Walk(Protocol):
 
 @dataclass(frozen=True)
 class HitAndRunWalk:
-    """Hit-and-Run: a uniform direction, then a uniform point of the chord (paper, Section 1)."""
+    """
+    Hit-and-Run: draw a uniform direction, then a uniform point of the chord along it.
+
+    The chord is the free segment through the chain's point (paper, Section 1).
+    """
 
     name = 'hit_and_run'
 
@@ -67,7 +72,7 @@ class HitAndRunWalk:
 
 @dataclass(frozen=True)
 class CoordinateHitAndRunWalk:
-    """Coordinate Hit-and-Run: a uniform coordinate axis, then a uniform point of the chord."""
+    """Coordinate Hit-and-Run: draw a uniform axis, then a uniform point of the chord along it."""
 
     name = 'coordinate_hit_and_run'
 
@@ -79,17 +84,18 @@ class CoordinateHitAndRunWalk:
 @dataclass(frozen=True)
 class BallWalk:
     """
-    Ball walk: a uniform point of the ball around the chain, accepted where it is free.
+    Ball walk: draw a uniform point of the ball around the chain's point; move there if free.
 
-    The textbook version tests the end point alone, and so steps through walls that are thinner
-    than its radius. With ``segment_visible`` the segment must be free too, as for a robot.
+    With ``segment_visible`` (the default) the segment to the new point must be free too, as for a
+    robot. Without it, as in the textbook version, the new point alone is tested, so that the walk
+    steps through walls that are thinner than its radius.
 
     Attributes
     ----------
     radius : float, optional
         Radius of the ball, in the caller's units. When left out, ``(dim + 1) / sqrt(dim)`` times
-        the space's typical clearance. In a ball of radius r that is r / sqrt(dim): up to a
-        factor, the largest radius whose steps are not mostly rejected in high dimensions.
+        the space's typical clearance. If the space is a ball of radius r, that is r / sqrt(dim):
+        up to a factor, the largest radius whose steps are not mostly rejected in high dimensions.
     segment_visible : bool
         Whether the segment to the new point must be free too.
 
@@ -127,7 +133,15 @@ WALKS = tuple(_WALKS)
 
 
 def make_walk(walk: str | Walk) -> Walk:
-    """Return the walk of a name in ``WALKS``, or the walk itself, or raise RequestError."""
+    """
+    Return the walk of a name in ``WALKS``, or ``walk`` itself if it is a walk already.
+
+    Raises
+    ------
+    RequestError
+        For any other name or value, as for the class of a walk.
+
+    """
     if isinstance(walk, str):
         return _WALKS[check_choice('walk', walk, WALKS)]
     if isinstance(walk, type) or not callable(getattr(walk, 'compiled', None)):
@@ -167,7 +181,8 @@ def take_step(walk: Any, space: Any, cache: Any, u: Any, rng: Any, counts: Any) 
     space : NamedTuple
         Compiled space.
     cache : ChainCache or the space's own
-        Position of the chain, which the step changes.
+        Position of the chain in the kernel frame, and what the space caches for it. The step
+        changes both when the chain moves.
     u : (dim,)
         Work array for the direction; zero before and after steps of coordinate walks.
     rng : (4,) uint64
@@ -201,7 +216,11 @@ def _coordinate_hit_and_run(walk, space, cache, u, rng, counts):
 @take_step.register(BallStep)
 @inlined
 def _ball_walk(walk, space, cache, u, rng, counts):
-    """Move to a uniform point of the ball if it, or the segment, is free; return whether."""
+    """
+    Move to a uniform point of the ball if it is free; return whether the chain moved.
+
+    With ``walk.segment_visible`` the segment to the point must be free too.
+    """
     draw_in_ball(walk.radius, rng, u)
     for i in range(len(u)):
         cache.y[i] = cache.x[i] + u[i]
@@ -224,7 +243,12 @@ def _move_on_chord(zero_length, space, cache, u, axis, rng, counts):
 
 @inlined
 def _move_between(space, cache, u, axis, lower, upper, rng, counts):
-    """Move by ``s u``, s uniform in (lower, upper) and not on an end; return whether it moved."""
+    """
+    Move by ``s u``, with s uniform in (lower, upper); return whether the chain moved.
+
+    A draw on an end, or whose point is not free, counts as a redraw and is repeated; after
+    ``REDRAWS_MAX`` redraws the chain stays.
+    """
     for _ in range(REDRAWS_MAX):
         s = lower + (upper - lower) * uniform(rng)
         if lower < s < upper and move_along(space, cache, u, axis, s):
@@ -235,7 +259,11 @@ def _move_between(space, cache, u, axis, lower, upper, rng, counts):
 
 @kernel
 def _move_on_zero_chord(space, cache, u, axis, lower, upper, rng, counts):
-    """Move on a chord of few floating-point numbers; return whether the chain moved."""
+    """
+    Move on a chord shorter than the zero length; return whether the position changed.
+
+    Such a chord has few floating-point numbers, so that the point drawn may equal the old one.
+    """
     counts[ZERO_CHORDS] += 1
     before = cache.x.copy()
     _move_between(space, cache, u, axis, lower, upper, rng, counts)

@@ -1,5 +1,5 @@
 """
-The quantities of the paper, computed: the law of a step, the shape of sets, mixing.
+Quantities of the paper, computed: the distribution of a step, the shape of sets, mixing.
 
 Source: Abbasi-Yadkori, Bartlett, Gabillon and Malek, "Hit-and-Run for Sampling and Planning in
 Non-Convex Spaces" (2016). Sigma is the set, n its dimension. Lemmas and equations are numbered as

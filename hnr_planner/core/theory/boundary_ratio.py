@@ -32,6 +32,7 @@ def ball_boundary_ratio(radius: float, epsilon: float) -> float:
     """
     Return R_epsilon of a ball in any dimension: sqrt(2 radius / epsilon - 1).
 
+    ``epsilon`` is the least distance of a point from the sphere, in the unit of ``radius``.
     At distance epsilon from the sphere, the nearer end of a chord is farthest when the chord is
     perpendicular to the radius: sqrt(epsilon (2 radius - epsilon)).
     """

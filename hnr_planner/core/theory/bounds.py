@@ -3,7 +3,7 @@ The paper's bounds: from the shape of a set to conductance and mixing time (Lemm
 
 Lemma 13 bounds the conductance Phi of Hit-and-Run on Sigma = g(Omega) from below, where Omega is a
 ball and g preserves volume (Assumption 2). As printed, the formula has three errors and its proof
-has gaps, which ``docs/theory.md`` lists. So there are three versions of it:
+has gaps, which ``docs/theory.md`` lists. So there are three versions of the bound:
 
 - ``printed``: the formula as printed;
 - ``corrected``: with correct units, and with two factors that the proof loses;
@@ -66,12 +66,17 @@ class BallImage:
 
 
 def ratio_inequality(ratio: float) -> float:
-    """Right-hand side 1 / (4 R (1 + 2 R)) of Lemma 8."""
+    """Return the right-hand side 1 / (4 R (1 + 2 R)) of Lemma 8, for the boundary ratio R."""
     return 1.0 / (4.0 * ratio * (1.0 + 2.0 * ratio))
 
 
 def lipschitz_factor(image: BallImage, epsilon: float) -> float:
-    """Return the largest ratio of d on Omega to d-tilde on Sigma, epsilon inside (Lemma 10)."""
+    """
+    Return the bound of Lemma 10 on the ratio of d on Omega to d-tilde on Sigma.
+
+    It holds for points of the ball Omega at distance ``epsilon`` [m] or more from its boundary. d
+    is the cross-ratio distance, d-tilde the chain distance of the images in Sigma.
+    """
     ratio = ball_boundary_ratio(image.radius, epsilon)
     return (image.stretch * image.shrink) ** 2 / ratio_inequality(ratio)
 
@@ -99,7 +104,13 @@ def mended_view_bound(dim: int, kappa: float, distance: float, epsilon: float) -
 
 
 def variation_bound(epsilon: float, diameter: float) -> float:
-    """Return 1 - epsilon / (8 e^4 D): the bound of Lemma 12 on the distance of two steps' laws."""
+    """
+    Return 1 - epsilon / (8 e^4 D), the bound of Lemma 12 on a total variation distance.
+
+    The distance is that between the distributions of a step from u and of a step from v, for two
+    points that are close in the sense of Lemma 12 and at least ``epsilon`` [m] from the boundary;
+    D is the ``diameter`` of the set [m].
+    """
     return 1.0 - epsilon / (8.0 * math.exp(4.0) * diameter)
 
 
@@ -152,11 +163,13 @@ def mended_conductance(image: BallImage) -> float:
 
 def mixing_bound(conductance: float, warmth: float, epsilon: float) -> float:
     """
-    Return the steps until every set has its probability to within ``epsilon`` (Lemma 6).
+    Return the number of steps after which the walk has mixed to within ``epsilon`` (Lemma 6).
 
-    The first t with sqrt(M) (1 - Phi^2 / 2)^t <= epsilon. The ``warmth`` M bounds the density of
-    the start relative to the uniform one. It is infinite for a start at a point, and stays so
-    for the first n steps.
+    After so many steps the probability that the walk is in a subset differs from the subset's
+    fraction of the volume by at most ``epsilon``, for every subset. The number, which need not be
+    whole, solves sqrt(M) (1 - Phi^2 / 2)^t = epsilon. ``conductance`` is Phi. The ``warmth`` M is
+    the largest ratio of the density of the start to the uniform density: M is infinite for a start
+    at a point, and the density after each of the first n steps is still unbounded.
     """
     return math.log(math.sqrt(warmth) / epsilon) / -math.log1p(-(conductance**2) / 2.0)
 

@@ -41,15 +41,15 @@ class Bounds(NamedTuple):
 
 def even_chain_distance(ratio: float, n_links: float = math.inf) -> float:
     """
-    Return the sum of the cross-ratio distances of the equal subsegments of one segment.
+    Return the sum of cross-ratio distances of ``n_links`` equal subsegments of one segment.
 
-    It equals d-tilde in convex sets, and bounds it from above for mutually visible points in
-    other sets.
+    Subsegments are equal when their Hilbert lengths are. The sum equals d-tilde of the ends in
+    convex sets, and bounds d-tilde from above for mutually visible points in other sets.
 
     Parameters
     ----------
     ratio : float
-        Cross-ratio distance of the ends.
+        Cross-ratio distance d of the ends of the segment.
     n_links : float
         Number of subsegments; infinite for the limit log(1 + d).
 
@@ -63,8 +63,10 @@ def chain_distance(
     """
     Return bounds on d-tilde of two points of a set in the plane.
 
-    Upper bound: the best chain over points of the set, after continuous optimization. Lower bound:
-    every segment costs at least 4 |u - v| / D, and at least its cost in the convex hull.
+    Upper bound: the sum of cross-ratio distances along the best chain found over points of the
+    set, after continuous optimization; inf when no chain was found. Lower bound: the larger of
+    the distance of ``u`` and ``v`` in the convex hull, and of a bound from the shortest path
+    between them, whose Hilbert length is at least 4 / D times its length; D is the diameter.
 
     Parameters
     ----------
@@ -73,7 +75,7 @@ def chain_distance(
     u, v : (2,)
         Free points.
     n_links : float
-        Number of segments of a chain; infinite for the limit.
+        Number of segments of a chain; infinite for the limit of many segments.
     seed : int
         Seed of the random points that chains may pass at first.
 
@@ -99,13 +101,18 @@ def chain_distance(
 
 
 def chain_cost(space: Space, chain: Floats, n_links: float) -> float:
-    """Return the cost of a chain (m, dim): the sum of distances, or its limit; inf if blocked."""
+    """
+    Return the cost of a chain of points (m, dim), the ends of its m - 1 segments.
+
+    The cost is the sum of the segments' cross-ratio distances; for infinite ``n_links``, the sum
+    of their Hilbert distances. It is inf if a segment is not free.
+    """
     ratios = cross_ratio_distance(space, chain[:-1], chain[1:])
     return float((hilbert_distance(ratios) if n_links == math.inf else ratios).sum())
 
 
 def hull_of(space: Space) -> Space:
-    """Return the convex hull of a set in the plane, or its bounds where corners are unknown."""
+    """Return the convex hull of a set in the plane; its bounding box if corners are unknown."""
     if isinstance(space, BallSpace | BoxSpace | PolytopeSpace):
         return space
     points = corners(space).points
@@ -116,7 +123,7 @@ def hull_of(space: Space) -> Space:
 
 
 def _total(hilbert: float, n_links: float) -> float:
-    """Return the sum of the distances of equal subsegments with this total Hilbert length."""
+    """Return the sum of cross-ratio distances of equal links of total length ``hilbert``."""
     return hilbert if n_links == math.inf else n_links * math.expm1(hilbert / n_links)
 
 
@@ -136,7 +143,7 @@ def _diameter(hull: Space) -> float:
 
 
 def _pairwise(space: Space, nodes: Floats) -> Floats:
-    """Return the cross-ratio distances (k, k) of points (k, 2); inf where not visible."""
+    """Return the cross-ratio distances (k, k) of points (k, 2); inf for pairs not visible."""
     first, second = np.triu_indices(len(nodes), 1)
     ratios = np.zeros((len(nodes), len(nodes)))
     ratios[first, second] = cross_ratio_distance(space, nodes[first], nodes[second])
@@ -144,7 +151,12 @@ def _pairwise(space: Space, nodes: Floats) -> Floats:
 
 
 def _shortest_length(nodes: Floats, ratios: Floats) -> float:
-    """Return the length [m] of the shortest path from node 0 to 1 of (k, 2), by visible pairs."""
+    """
+    Return a lower bound [m] on the length of the shortest path from node 0 to node 1.
+
+    The path runs over ``nodes`` (k, 2), between pairs with finite ``ratios`` (k, k). Where no path
+    is found, the bound is the straight distance.
+    """
     straight = float(np.linalg.norm(nodes[1] - nodes[0]))
     if len(nodes) == 2:
         return straight
@@ -156,7 +168,12 @@ def _shortest_length(nodes: Floats, ratios: Floats) -> float:
 
 
 def _best_chain(nodes: Floats, ratios: Floats, n_links: float) -> Floats | None:
-    """Return the cheapest chain (m, 2) from the first node to the second, or None."""
+    """
+    Return the cheapest chain (m, 2) over ``nodes`` (k, 2), from node 0 to node 1.
+
+    ``ratios`` (k, k) are the cross-ratio distances of the nodes. None if no chain of ``n_links``
+    segments joins node 0 to node 1.
+    """
     if n_links == math.inf:
         costs = np.where(np.isfinite(ratios), np.log1p(np.minimum(ratios, 1e300)), 0.0)
         total, before = dijkstra(costs, indices=0, return_predecessors=True)

@@ -2,7 +2,7 @@
 Conductance Phi of Hit-and-Run: the relative flow across the narrowest cut of a set.
 
 Definition (paper, Section 3.1): the infimum over subsets A of at most half the volume of the
-probability that a step from a uniform point of A leaves A.
+probability that a step from a point drawn uniformly from A ends outside A.
 
 A step from a uniform point amounts to a uniform line and two independent uniform points of one of
 its chords. So the flow from A to B in one step is a mean over lines: the sum over the line's
@@ -36,7 +36,8 @@ class CellFlow(NamedTuple):
     Attributes
     ----------
     area : (m,)
-        Area of the set in each cell [m^2]; empty cells are omitted.
+        Area of the set in each cell [m^2]; cells without any are omitted, so that m is the
+        number of cells left.
     flow : (m, m)
         Flow between cells in one step [m^2]: symmetric, with ``area`` as its row sums.
     centre : (m, 2)
@@ -50,7 +51,7 @@ class CellFlow(NamedTuple):
 
     @property
     def kernel(self) -> Floats:
-        """Transition probabilities (m, m) from a uniform point of one cell to each cell."""
+        """Transition probabilities (m, m): row i is for a step from a uniform point of cell i."""
         return self.flow / self.area[:, None]
 
     @property
@@ -72,7 +73,7 @@ class Cut(NamedTuple):
     Attributes
     ----------
     inside : (m,) bool
-        Cells on one side.
+        Whether each cell, in the order of ``CellFlow.area``, is on the first side.
     conductance : float
         Flow across the cut over the area of the smaller side.
 
@@ -83,7 +84,7 @@ class Cut(NamedTuple):
 
 
 class Estimate(NamedTuple):
-    """A mean over random draws and its standard error."""
+    """An estimate from random draws, and its standard error, in the unit of the estimate."""
 
     value: float
     error: float
@@ -135,8 +136,10 @@ def cell_flow(space: Space, shape: tuple[int, int], n_lines: int = 1 << 20) -> C
 
 def best_cut(flow: CellFlow) -> Cut:
     """
-    Return the best cut along the second eigenvector: an upper bound on the conductance.
+    Return the cut of least conductance among those along the second eigenvector.
 
+    Sorted by their value in the second eigenvector, the first k cells are one side of a cut, for
+    every k. The conductance of the best cut is an upper bound on the conductance Phi.
     With half the spectral gap as the lower bound this is the bracket of Cheeger's inequality:
     gap / 2 <= Phi <= cut (Lawler and Sokal 1988).
     """
@@ -155,14 +158,17 @@ def best_cut(flow: CellFlow) -> Cut:
 
 def cut_conductance(space: Space, side: Space, n_lines: int, seed: int) -> Estimate:
     """
-    Estimate the conductance of the cut of a space of any dimension by another space.
+    Estimate the conductance of a cut: the flow across it over the volume of its smaller side.
+
+    The intersection of ``space`` with ``side`` is one side of the cut, the rest of ``space`` the
+    other. The dimension is any.
 
     Parameters
     ----------
     space : Space
         The set.
     side : Space
-        Its intersection with the set is one side of the cut.
+        A set whose intersection with ``space`` is one side of the cut.
     n_lines : int
         Number of random lines through the ball around the bounds.
     seed : int
@@ -200,7 +206,12 @@ def _second_eigenpair(flow: CellFlow) -> tuple[float, Floats]:
 
 @kernel
 def _add_chords(points, directions, begin, end, rows, columns, flow, area):
-    """Add the flow and area of chords ``point + s direction``, begin < s < end [cells]."""
+    """
+    Add the flow and area of k chords to ``flow`` and ``area``, which are indexed by cell.
+
+    Chords are ``point + s direction``, begin < s < end, with points and directions (k, 2) in units
+    of cells. Cell ``row * columns + column`` is at the given row and column of the lattice.
+    """
     flow, area = borrowed(flow), borrowed(area)
     cells = np.empty(2 * (rows + columns) + 4, dtype=np.int64)
     lengths = np.empty(len(cells))
@@ -217,7 +228,12 @@ def _add_chords(points, directions, begin, end, rows, columns, flow, area):
 
 @kernel
 def _cross_cells(x, u, begin, end, rows, columns, cells, lengths):
-    """Write the cells that a chord crosses and its length in each; return their number."""
+    """
+    Write the cells that the chord ``x + s u``, begin < s < end, crosses; return their number.
+
+    The number of each cell goes into ``cells``, the length of the chord in this cell, in units of
+    s, into ``lengths``; at most ``len(cells)`` are written.
+    """
     n_cells = 0
     s = begin
     while s < end and n_cells < len(cells):

@@ -1,8 +1,8 @@
 """
 Corners of the boundary of sets in the plane.
 
-They are the kinks of chord lengths as functions of the angle, the ends of a view's walls, and the
-turning points of shortest paths.
+Corners are the kinks of chord lengths as functions of the angle, the ends of a view's walls, and
+the turning points of shortest paths.
 """
 
 import itertools
@@ -37,7 +37,11 @@ class Corners(NamedTuple):
 
 
 def corners(space: Space) -> Corners:
-    """Return the corners of a grid, polygon, box or polytope; none for other spaces."""
+    """
+    Return the corners of a grid or polygon, or of a box or polytope in the plane.
+
+    For all other spaces, and for boxes and polytopes in more dimensions, both arrays are empty.
+    """
     none = np.empty((0, 2))
     if isinstance(space, GridSpace):
         return _grid_corners(space)
@@ -52,7 +56,7 @@ def corners(space: Space) -> Corners:
 
 
 def _grid_corners(space: GridSpace) -> Corners:
-    """Return the lattice points at which the boundary of the blocked cells turns."""
+    """Return the lattice points where the boundary turns, and points beside reflex corners."""
     blocked = np.pad(space.blocked, 1, constant_values=True)
     around = np.stack([blocked[:-1, :-1], blocked[:-1, 1:], blocked[1:, :-1], blocked[1:, 1:]])
     count = around.sum(axis=0)
@@ -68,7 +72,7 @@ def _grid_corners(space: GridSpace) -> Corners:
 
 
 def _polygon_corners(space: PolygonSpace) -> Corners:
-    """Return the vertices of the rings, and points beside those where a ring turns right."""
+    """Return the vertices of the rings, and free points beside the reflex vertices."""
     lower, upper = space.bounds
     beside = BESIDE * float(np.linalg.norm(upper - lower))
     points, turns = [], []
@@ -88,7 +92,7 @@ def _polygon_corners(space: PolygonSpace) -> Corners:
 
 
 def _polytope_corners(normals: Floats, offsets: Floats) -> Floats:
-    """Return the intersections (k, 2) of two lines that satisfy all other inequalities."""
+    """Return the vertices (k, 2) of the polygon ``normals @ x <= offsets``, normals (m, 2)."""
     found = []
     for i, j in itertools.combinations(range(len(offsets)), 2):
         if abs(np.linalg.det(normals[[i, j]])) > 1e-12:

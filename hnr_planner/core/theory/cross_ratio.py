@@ -25,12 +25,14 @@ def cross_ratio_distance(space: Space, u: ArrayLike, v: ArrayLike) -> Floats:
     space : Space
         The set.
     u, v : (k, dim) or (dim,)
-        Free points, paired.
+        Free points: point k of ``u`` is paired with point k of ``v``; a single point is paired
+        with every point of the other argument.
 
     Returns
     -------
     (k,) float64
-        inf for points that are not mutually visible.
+        Distance of each pair: inf where the two points are not mutually visible, 0 where they
+        are equal.
 
     """
     u = np.atleast_2d(check_points('u', u, space.dim))

@@ -67,8 +67,8 @@ def slice_curvature(
     """
     Return the curvature of the boundary of a plane slice that is star-shaped about ``centre``.
 
-    Of a slice with several components it is the one that contains ``centre``, which bounds the
-    paper's kappa_H R_H from below.
+    Of a slice with several components, only the component that contains ``centre`` counts: its
+    curvature times perimeter is a lower bound on the paper's kappa_H R_H.
 
     Parameters
     ----------
@@ -77,7 +77,7 @@ def slice_curvature(
     centre : (dim,)
         A free point from which all of the slice's boundary is visible.
     first, second : (dim,)
-        Orthogonal unit vectors that span the plane.
+        Orthogonal unit vectors that span the plane of the slice.
     n_points : int
         Number of points on the boundary.
 

@@ -39,6 +39,7 @@ def transition_density(space: Space, u: ArrayLike, points: ArrayLike) -> Floats:
     Returns
     -------
     (k,) float64
+        Density [1/m^dim] of the end of the step at each point.
 
     """
     u = check_point('u', u, space.dim)

@@ -42,7 +42,11 @@ def ball_image(space: ShearedSpace) -> BallImage:
 
 
 def image_boundary(space: ShearedSpace, n_points: int) -> Floats:
-    """Return points (n_points, 2) on the boundary of a sheared disc, counter-clockwise."""
+    """
+    Return points (n_points, 2) on the boundary of a sheared disc, counter-clockwise.
+
+    The points are the images of points at equal angles on the circle, in the caller's frame.
+    """
     angle = np.arange(n_points) * (2.0 * math.pi / n_points)
     circle = np.stack([np.cos(angle), np.sin(angle)], axis=1)
     radius, centre = space.data.radius, space.centre

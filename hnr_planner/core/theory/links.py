@@ -6,10 +6,11 @@ set within it.
 
 On a grid it is bounded from both sides by breadth-first search over squares. If the segment
 between the centres of two squares misses the blocked cells grown by half a square, all points of
-the one are visible from all points of the other: paths over such pairs exist, which gives the
-upper bound. If any point of one is visible from any point of the other, that segment misses the
-blocked cells shrunk by half a square: every path consists of such pairs, which gives the lower
-bound. A polygon is divided into convex pieces for the same search.
+one square are visible from all points of the other: a path over such pairs of squares exists,
+which gives the upper bound. If any point of one square is visible from any point of the other,
+the segment between their centres misses the blocked cells shrunk by half a square: every path
+consists of such pairs, which gives the lower bound. A polygon is divided into convex pieces, which
+take the place of the squares.
 """
 
 import math
@@ -31,7 +32,7 @@ ROUNDING = 1e-9
 
 
 class LinkBounds(NamedTuple):
-    """Bounds on the link diameter; the upper one is inf where the squares are too coarse."""
+    """Bounds on the link diameter; ``upper`` is inf if the squares are too coarse to bound it."""
 
     lower: int
     upper: float
@@ -41,7 +42,8 @@ def link_diameter(space: GridSpace, subdivision: int = 2) -> LinkBounds:
     """
     Bound the link diameter of a grid, over all pairs of connected points.
 
-    Points on the lines between squares are limits of those within, and do not count.
+    Two points are connected if they lie in the same component of free space. Points on the lines
+    between squares do not count, for they are limits of points within the squares.
 
     Parameters
     ----------
@@ -107,7 +109,7 @@ def polygon_link_diameter(space: PolygonSpace, n_squares: int = 16) -> LinkBound
 
 
 def _convex_pieces(polygon: Any, side: float) -> NDArray[Any]:
-    """Divide a polygon by squares, and pieces that are not convex by a triangulation."""
+    """Cut a polygon into squares of this ``side``, and non-convex pieces into triangles."""
     left, bottom, right, top = polygon.bounds
     x, y = np.meshgrid(
         np.arange(left, right - ROUNDING * side, side),
@@ -125,7 +127,7 @@ def _convex_pieces(polygon: Any, side: float) -> NDArray[Any]:
 
 
 def _with_area(geometries: NDArray[Any], side: float) -> NDArray[Any]:
-    """Return the single polygons of geometries, without those thinner than rounding."""
+    """Return the single polygons of geometries whose area is above ``ROUNDING * side**2``."""
     parts = shapely.get_parts(geometries)
     return parts[shapely.area(parts) > ROUNDING * side**2]
 
@@ -134,8 +136,15 @@ def annulus_sector_links(inner: float, outer: float, angle: float) -> int:
     """
     Return the link diameter of a sector (angle [rad]) of an annulus, in closed form.
 
-    With b = arccos(inner / outer), a segment between points of the outer arc spans an angle of at
-    most 2 b, and one from the inner arc b: k segments along the inner wall span 2 b (k - 1).
+    ``inner`` and ``outer`` are the radii, in one unit. With b = arccos(inner / outer), a segment
+    between two points of the outer arc spans an angle of at most 2 b, and a segment from the inner
+    arc to the outer arc at most b: k segments along the inner arc span 2 b (k - 1).
+
+    Raises
+    ------
+    RequestError
+        Unless 0 < ``inner`` < ``outer``.
+
     """
     if not 0.0 < inner < outer:
         raise RequestError(f'radii must be 0 < inner < outer, got {inner:g}, {outer:g}')
@@ -143,7 +152,11 @@ def annulus_sector_links(inner: float, outer: float, angle: float) -> int:
 
 
 def _runs(blocked: Bools) -> NDArray[np.int64]:
-    """Return the boxes (k, 4) x, y, x, y of the maximal runs of blocked cells within rows."""
+    """
+    Return a box for each maximal run of neighbouring blocked cells in a row.
+
+    Boxes are (k, 4): left, bottom, right, top [cells], of the lower left and upper right corner.
+    """
     edges = np.diff(np.pad(blocked, ((0, 0), (1, 1))).astype(np.int8), axis=1)
     row, first = np.nonzero(edges == 1)
     _, last = np.nonzero(edges == -1)
@@ -151,7 +164,12 @@ def _runs(blocked: Bools) -> NDArray[np.int64]:
 
 
 def _link_distances(visible: Bools) -> Floats:
-    """Return the least numbers of links (k, k), given visible pairs (k, k); 1 in one square."""
+    """
+    Return the least numbers of links (k, k) between k squares.
+
+    ``visible`` is (k, k) bool: which pairs one link joins. The number is inf for pairs that no
+    path joins, and 1 from a square to itself.
+    """
     links: Floats = dijkstra(csr_array(visible), unweighted=True)
     np.fill_diagonal(links, 1.0)
     return links
@@ -159,7 +177,12 @@ def _link_distances(visible: Bools) -> Floats:
 
 @kernel
 def _visible_pairs(centres, boxes, grow):
-    """Return the pairs (k, k) of points whose segment misses all open boxes, grown by ``grow``."""
+    """
+    Return which pairs (k, k) bool of ``centres`` (k, 2) have a segment that misses all boxes.
+
+    ``boxes`` are (m, 4): left, bottom, right, top. Each is open, and grown by ``grow`` on every
+    side, or shrunk if ``grow`` is negative. All lengths are in units of squares.
+    """
     visible = np.ones((len(centres), len(centres)), dtype=np.bool_)
     for i in range(len(centres)):
         for j in range(i):
@@ -172,7 +195,7 @@ def _visible_pairs(centres, boxes, grow):
 
 @kernel
 def _crosses(a, b, box, grow):
-    """Return whether a segment meets the interior of a box grown on every side."""
+    """Return whether segment ``a`` to ``b`` meets the interior of ``box`` grown by ``grow``."""
     first, last = 0.0, 1.0
     for i in range(2):
         lower, upper, along = box[i] - grow - a[i], box[i + 2] + grow - a[i], b[i] - a[i]

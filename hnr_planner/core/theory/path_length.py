@@ -1,11 +1,11 @@
 """
-Number of transitions of Hit-and-Run into a goal G, which is the length of its path.
+Number of steps (transitions) of Hit-and-Run until it is in a goal G: the length of its path.
 
 Estimate from mixing (paper, Section 1): t_mix / sigma(G), since a mixed walk is in G with
 probability sigma(G), the goal's fraction of the volume.
 
-On the cells of a lattice the expected number itself is the solution of a linear system, so that
-the two can be compared.
+On the cells of a lattice (``conductance.CellFlow``) the expected number of steps is the solution
+of a linear system, so that the estimate can be compared with the expected number.
 """
 
 from hnr_planner.core.checks import Floats
@@ -19,7 +19,29 @@ STEPS_MAX = 100_000
 
 
 def mixing_time(flow: CellFlow, start: int, epsilon: float = 0.25) -> int:
-    """Return the steps from a cell until the law over cells is within ``epsilon`` of uniform."""
+    """
+    Return the steps of the chain of cells from one cell until it has mixed to within ``epsilon``.
+
+    The chain has mixed once the total variation distance between the distribution of its cell and
+    the stationary distribution is at most ``epsilon``. Stationary, the probability of a cell is
+    its fraction of the set's area.
+
+    Parameters
+    ----------
+    flow : CellFlow
+        Flow between the cells.
+    start : int
+        Index of the first cell into ``flow.area``.
+    epsilon : float
+        Largest total variation distance, between 0 and 1.
+
+    Raises
+    ------
+    RequestError
+        When the chain has not mixed after ``STEPS_MAX`` steps, as with cells that are not
+        connected.
+
+    """
     kernel, stationary = flow.kernel, flow.area / flow.area.sum()
     law = np.zeros(len(stationary))
     law[start] = 1.0
@@ -33,7 +55,12 @@ def mixing_time(flow: CellFlow, start: int, epsilon: float = 0.25) -> int:
 
 
 def expected_transitions(flow: CellFlow, goal: NDArray[np.bool_]) -> Floats:
-    """Return the mean transitions (m,) from each cell until the walk is in a ``goal`` (m,)."""
+    """
+    Return the mean number of steps (m,) from each cell until the chain of cells is in a goal cell.
+
+    ``goal`` is (m,) bool, in the order of ``flow.area``: whether a cell belongs to the goal. The
+    result is 0 for goal cells.
+    """
     outside = ~goal
     kernel = flow.kernel[np.ix_(outside, outside)]
     transitions = np.zeros(len(goal))
@@ -42,7 +69,13 @@ def expected_transitions(flow: CellFlow, goal: NDArray[np.bool_]) -> Floats:
 
 
 def mixing_estimate(mixing: float, goal_fraction: float) -> float:
-    """Return the estimate t_mix / sigma(G) [steps]: one independent trial per mixing time."""
+    """
+    Return the estimate t_mix / sigma(G) of the number of steps into a goal G.
+
+    ``mixing`` is the mixing time t_mix [steps], ``goal_fraction`` the goal's fraction sigma(G) of
+    the set's volume. The estimate counts one independent trial per mixing time, each with success
+    probability sigma(G).
+    """
     return mixing / goal_fraction
 
 
@@ -50,8 +83,10 @@ def transitions_bound(relaxation: float, goal_fraction: float, warmth: float = 1
     """
     Return the bound M t_rel (1 - sigma(G)) / sigma(G) on the expected transitions into a goal.
 
-    For a reversible chain from its stationary law it follows from Dirichlet's principle (Aldous
-    and Fill, "Reversible Markov chains and random walks on graphs", Section 3.6). From a start of
-    density at most ``warmth`` M times the stationary one it takes at most M times as long.
+    ``relaxation`` is the relaxation time t_rel [steps], ``goal_fraction`` is sigma(G). For a
+    reversible chain that starts from its stationary distribution, the bound with M = 1 follows
+    from Dirichlet's principle (Aldous and Fill, "Reversible Markov chains and random walks on
+    graphs", Section 3.6). From a start whose density is at most ``warmth`` M times the stationary
+    density, the chain takes at most M times as many steps.
     """
     return warmth * relaxation * (1.0 - goal_fraction) / goal_fraction

@@ -20,20 +20,21 @@ ORDER = 12
 
 def reach(space: Space, points: Floats, directions: Floats) -> Floats:
     """
-    Return the distances from points to the boundary, each in its own direction.
+    Return the distances from points to the boundary, from point k along direction k.
 
     Parameters
     ----------
     space : Space
         The set.
     points : (k, dim)
-        Points; the distance of those that are not free is 0.
+        Points; the distance from a point that is not free is 0.
     directions : (k, dim)
         Unit vectors.
 
     Returns
     -------
     (k,) float64
+        Distances [m].
 
     """
     return _reach(space.compiled, *_in_rows(points, directions))
@@ -43,7 +44,8 @@ def chords(space: Space, points: Floats, directions: Floats) -> tuple[Floats, Fl
     """
     Return the distances (k,) backward and forward from points to the ends of their chords.
 
-    ``points`` and ``directions`` are (k, dim), directions unit vectors; 0 at points not free.
+    ``points`` and ``directions`` are (k, dim), and directions are unit vectors. Point k lies on a
+    chord along direction k. Both distances [m] are 0 for points that are not free.
     """
     points, directions = _in_rows(points, directions)
     return _reach(space.compiled, points, -directions), _reach(space.compiled, points, directions)
@@ -53,7 +55,7 @@ def pieces(
     space: Space, points: Floats, directions: Floats, lower: Floats, upper: Floats
 ) -> tuple[NDArray[np.int64], Floats, Floats]:
     """
-    Intersect lines with a space: return all maximal free intervals, not the chord alone.
+    Intersect lines with a space: return all maximal free intervals of each line.
 
     Parameters
     ----------
@@ -67,9 +69,9 @@ def pieces(
     Returns
     -------
     line : (m,) int64
-        Index of the line of each interval, in ascending order.
+        Index into ``points`` of the line of each interval, in ascending order.
     first, last : (m,)
-        Ends of each interval.
+        Values of s at the ends of each interval, cut off at the range of s on its line.
 
     """
     points, directions = _in_rows(points, directions)
@@ -79,7 +81,11 @@ def pieces(
 def lengths_within(
     space: Space, points: Floats, directions: Floats, lower: Floats, upper: Floats
 ) -> Floats:
-    """Return the free length (k,) of each line between two parameters (k,), as in ``pieces``."""
+    """
+    Return the free length (k,) of each line ``point + s direction`` for lower <= s <= upper.
+
+    The arguments are those of ``pieces``; the length is the sum of a line's free intervals.
+    """
     line, first, last = pieces(space, points, directions, lower, upper)
     lengths = np.bincount(line, weights=last - first, minlength=len(points))
     return lengths.astype(np.float64)
@@ -140,7 +146,11 @@ def half_sphere(point: Floats, n_directions: int, *cornered: Space) -> tuple[Flo
 
 
 def _half_circle(point: Floats, n_directions: int, *cornered: Space) -> tuple[Floats, Floats]:
-    """Return angles (m,) in [0, pi) and weights (m,) that sum to 1."""
+    """
+    Return the angles (m,) [rad] and weights (m,) of ``half_sphere`` in the plane.
+
+    The angles cover a half circle, so that each line counts once; the weights sum to 1.
+    """
     offsets = [corners(space).points - point for space in cornered]
     ahead = np.concatenate(offsets) if offsets else np.empty((0, 2))
     if len(ahead) == 0:
@@ -162,14 +172,14 @@ def _half_circle(point: Floats, n_directions: int, *cornered: Space) -> tuple[Fl
 
 
 def _in_rows(points: Floats, directions: Floats) -> tuple[Floats, Floats]:
-    """Return both as C-contiguous arrays (k, dim), as the kernels are compiled for."""
+    """Return points and directions as the C-contiguous arrays (k, dim) that kernels need."""
     directions = np.ascontiguousarray(np.atleast_2d(directions))
     return np.ascontiguousarray(np.broadcast_to(points, directions.shape)), directions
 
 
 @kernel
 def _reach(space, points, directions):
-    """Return the distances (k,) from points to the boundary; 0 at points not free."""
+    """Return the distances (k,) from points along directions to the boundary; 0 if not free."""
     space = borrowed(space)
     ends = np.zeros(len(points))
     for k in range(len(points)):
@@ -180,7 +190,7 @@ def _reach(space, points, directions):
 
 @kernel
 def _pieces(space, points, directions, lower, upper):
-    """Return line, first and last of the free intervals of lines, in the order of the lines."""
+    """Return the arrays ``line``, ``first`` and ``last`` that ``pieces`` describes."""
     space = borrowed(space)
     line = []
     first = []

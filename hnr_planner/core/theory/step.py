@@ -1,10 +1,11 @@
 """
-Functionals of the law of one step of Hit-and-Run from u.
+Probabilities, means and lengths of one step of Hit-and-Run from a free point u.
 
 - step probability P_u(A): the integral of the density f_u over A (paper, Section 3.1);
 - step length F(u): the length that a step does not exceed with probability 1/8 (Section 3.3,
   before equation (6));
-- overlap of the steps from u and v: 1 minus the total variation distance of their laws (Lemma 12);
+- overlap of the steps from u and v: 1 minus the total variation distance of their
+  distributions (Lemma 12);
 - unseen probability: that a step from u is not visible from v (Lemma 11).
 """
 
@@ -30,8 +31,9 @@ def step_probability(
     """
     Return the probability P_u(A) that a step from ``u`` (dim,) ends in ``region``.
 
-    It is the mean over all lines of the fraction of the chord in the region: exact on each line,
-    and exact to rounding over the angle where the corners of both are known.
+    It is the mean, over all lines through ``u``, of the fraction of the chord in the region. The
+    fraction is exact on each line. The mean is exact to rounding in the plane if the boundaries of
+    space and region are straight and their corners are known.
     """
     u = _free_point(space, u)
     directions, weights = half_sphere(u, n_directions, space, region)
@@ -49,9 +51,11 @@ def step_mean(
     n_positions: int = N_POSITIONS,
 ) -> float:
     """
-    Return the mean of ``function`` ((k, dim) -> (k,)) at the end of a step from ``u`` (dim,).
+    Return the mean of ``function`` at the end of a step from ``u`` (dim,).
 
-    On each chord it is the midpoint rule with ``n_positions`` points.
+    ``function`` takes points (k, dim) and returns values (k,). The mean over lines through ``u``
+    is that of ``half_sphere``, the mean on each chord the midpoint rule with ``n_positions``
+    points.
     """
     u = _free_point(space, u)
     directions, weights = half_sphere(u, n_directions, space)
@@ -67,7 +71,7 @@ def step_length(
     space: Space, u: ArrayLike, probability: float = 1.0 / 8.0, n_directions: int = N_DIRECTIONS
 ) -> float:
     """
-    Return the length that a step from ``u`` (dim,) does not exceed with ``probability``.
+    Return the length [m] that a step from ``u`` (dim,) does not exceed with ``probability``.
 
     With the default 1/8 it is the paper's F(u) (Section 3.3, before equation (6)).
     """
@@ -85,10 +89,11 @@ def step_length(
 
 def step_overlap(space: Space, u: ArrayLike, v: ArrayLike) -> float:
     """
-    Return the common mass of the laws of a step from ``u`` and of a step from ``v`` (dim,).
+    Return the overlap of the distributions of a step from ``u`` and of a step from ``v`` (dim,).
 
-    It is 1 minus their total variation distance: the mean of min(1, f_v / f_u) over a step from
-    ``u``.
+    The overlap is the integral of min(f_u, f_v), the smaller density: 1 minus the total variation
+    distance of the two distributions. It is computed as the mean of min(1, f_v / f_u) over the
+    end of a step from ``u``.
     """
     u, v = _free_point(space, u), _free_point(space, v)
     if (u == v).all():

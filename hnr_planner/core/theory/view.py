@@ -20,11 +20,17 @@ NARROWEST = 1e-12
 
 def view(space: Space, u: ArrayLike, n_directions: int = 720) -> Floats:
     """
-    Return the polygon (m, 2) of the points visible from ``u`` (2,), counter-clockwise.
+    Return the vertices (m, 2) of the polygon of points visible from ``u``, counter-clockwise.
 
     Between the directions of two neighbouring corners the view ends on one straight wall, which
-    two rays determine exactly. Where corners are unknown, the polygon has its vertices on the
-    boundary in ``n_directions``.
+    two rays determine exactly. For a space without known corners, the vertices are the boundary
+    points in ``n_directions`` equally spaced directions, which are unused otherwise.
+
+    Raises
+    ------
+    RequestError
+        When the space is not in the plane, or ``u`` (2,) is not free.
+
     """
     if space.dim != 2:
         raise RequestError(f'a view is a polygon in the plane, the space has {space.dim} axes')
@@ -50,7 +56,7 @@ def view(space: Space, u: ArrayLike, n_directions: int = 720) -> Floats:
 
 
 def polygon_area(polygon: Floats) -> float:
-    """Return the area of a polygon (m, 2), positive when counter-clockwise."""
+    """Return the signed area of a polygon of vertices (m, 2): positive if counter-clockwise."""
     x, y = (polygon - polygon[0]).T
     return float(x @ np.roll(y, -1) - y @ np.roll(x, -1)) / 2.0
 

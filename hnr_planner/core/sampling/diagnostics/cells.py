@@ -1,7 +1,8 @@
 """
 Total variation distance and relaxation time, from draws sorted into cells of a set.
 
-Each draw is given by the index 0, 1, ... of its cell; the caller chooses the partition.
+Each draw is given by the index 0, 1, ... of its cell; the caller chooses the cells, which divide
+the set.
 """
 
 import math
@@ -18,20 +19,23 @@ NO_GAP = 1e-12
 
 class TotalVariation(NamedTuple):
     """
-    Estimates of the total variation distance between the law of draws and a known law.
+    Estimates of the total variation distance between the distribution of draws and a known one.
 
-    The distance is between the probabilities of the cells: 0 for equal laws, at most 1.
+    The distance compares the probabilities of the cells: it is 0 for equal probabilities, and at
+    most 1.
 
     Attributes
     ----------
     plug_in : float
-        Distance of the observed shares, which is biased upwards.
+        Distance of the observed frequencies of the cells, an estimate that is biased upwards.
     floor : float
-        Mean of ``plug_in`` for draws of the known law itself; its standard deviation is about
-        .30 / sqrt(n). For equal cells it is sqrt((n_cells - 1) / (2 pi n)).
+        Mean that ``plug_in`` has for n draws of the known distribution itself; the standard
+        deviation of ``plug_in`` is then about .30 / sqrt(n). For cells of equal probability the
+        floor is sqrt((n_cells - 1) / (2 pi n)).
     lower_bound : float
-        Cross-fitted estimate, which is biased downwards: one half of the draws selects the
-        overfull cells, the other half measures their excess. It may be below 0.
+        Cross-fitted estimate, which is biased downwards: one half of the draws selects the cells
+        with more draws than expected, the other half measures the excess of these cells. The
+        estimate may be below 0.
 
     """
 
@@ -42,19 +46,22 @@ class TotalVariation(NamedTuple):
 
 def total_variation(cells: ArrayLike, shares: ArrayLike) -> TotalVariation:
     """
-    Estimate the distance of independent draws, such as the ends of many chains, from a known law.
+    Estimate the total variation distance of independent draws from a known distribution.
+
+    The ends of many chains are independent draws; consecutive draws of one chain are not.
 
     Parameters
     ----------
     cells : (n,) int
         Cell of every draw, n at least 2.
     shares : (n_cells,)
-        Probability of every cell; for the uniform law, its fraction of the set's volume.
+        Known probability of every cell; for the uniform distribution, the cell's fraction of the
+        set's volume.
 
     Raises
     ------
     RequestError
-        When the shares are not probabilities, or a cell has no share.
+        When the shares are not probabilities, or an entry of ``cells`` is no index into them.
 
     """
     law = _check_shares(shares)
@@ -96,7 +103,7 @@ def relaxation_time(cells: ArrayLike, lag: int = 1) -> float:
     Returns
     -------
     float
-        At least 1; inf where no chain moved between two groups of cells.
+        At least 1; inf when no chain moved between two groups of cells, or all stayed in one cell.
 
     Raises
     ------
@@ -123,7 +130,15 @@ def relaxation_time(cells: ArrayLike, lag: int = 1) -> float:
 
 
 def _check_cells(cells: ArrayLike, ndim: int) -> NDArray[np.int64]:
-    """Return cells as integers of at least 0 in ``ndim`` dimensions, or raise RequestError."""
+    """
+    Return ``cells`` as an array of int64 with ``ndim`` dimensions.
+
+    Raises
+    ------
+    RequestError
+        When the cells are not integers of at least 0, or have another number of dimensions.
+
+    """
     numbers = np.asarray(cells)
     if numbers.ndim != ndim or not np.issubdtype(numbers.dtype, np.integer):
         raise RequestError(
@@ -136,7 +151,7 @@ def _check_cells(cells: ArrayLike, ndim: int) -> NDArray[np.int64]:
 
 
 def _check_shares(shares: ArrayLike) -> Floats:
-    """Return shares (n_cells,) that are probabilities, or raise RequestError."""
+    """Return probabilities (n_cells,); raise RequestError unless they are >= 0 and sum to 1."""
     law = np.asarray(shares, dtype=np.float64)
     if law.ndim != 1 or not (law >= 0.0).all() or not abs(law.sum() - 1.0) < 1e-9:
         raise RequestError(

@@ -2,10 +2,10 @@
 Chains confined to a region of the set that others leave.
 
 All draws together are divided into cells with equal numbers of draws, by repeated cuts at the
-median of the coordinate in which the chains differ most. A chain that mixes enters every cell; one
-that never entered a cell although it made enough draws is confined. This detects what the R-hat of
-single coordinates cannot: regions that differ only in how coordinates go together. It cannot
-detect a region that no chain has entered, nor one smaller than a cell.
+median of the coordinate in which the chains differ most. A chain that mixes enters every cell; a
+chain that never entered a cell although it made enough draws is confined. This test detects what
+the R-hat of single coordinates cannot: regions that differ only in how coordinates go together. It
+cannot detect a region that no chain has entered, nor a region smaller than a cell.
 """
 
 import math
@@ -22,7 +22,10 @@ FALSE_ALARM = 1e-6
 
 def count_missed_cells(draws: Floats, time: float) -> tuple[NDArray[np.int64], int]:
     """
-    Return the number of cells that each chain (n_chains,) never entered, and of all cells.
+    Return how many cells each chain never entered (n_chains,), and how many cells there are.
+
+    There are at most ``CELLS_MAX`` cells, and as few as it takes for chains of independent draws
+    to enter all of them, but for the probability ``FALSE_ALARM``.
 
     Parameters
     ----------
@@ -44,7 +47,12 @@ def count_missed_cells(draws: Floats, time: float) -> tuple[NDArray[np.int64], i
 
 
 def _number_of_cells(n_independent: float, n_chains: int) -> int:
-    """Return the most cells that chains of so many independent draws all enter."""
+    """
+    Return the largest number of cells, a power of two, that every mixing chain enters.
+
+    The probability that one of ``n_chains`` chains of ``n_independent`` independent draws misses
+    a cell is at most ``FALSE_ALARM``. The number is at most ``CELLS_MAX``.
+    """
     n_cells = CELLS_MAX
     while n_cells > 1 and n_cells * n_chains * math.exp(-n_independent / n_cells) > FALSE_ALARM:
         n_cells //= 2
@@ -52,7 +60,12 @@ def _number_of_cells(n_independent: float, n_chains: int) -> int:
 
 
 def _halves(cell: NDArray, points: Floats, chain: NDArray) -> tuple[NDArray, NDArray]:
-    """Cut a cell (rows of points) at the median of the coordinate that separates chains most."""
+    """
+    Cut a cell at the median of the coordinate that separates chains most; return both halves.
+
+    ``cell`` and its halves are indices into ``points`` (n, dim), the draws of all chains, and into
+    ``chain`` (n,), the number of the chain of each draw.
+    """
     inside = points[cell]
     inside = inside - inside.mean(axis=0)
     count = np.maximum(np.bincount(chain[cell]), 1)

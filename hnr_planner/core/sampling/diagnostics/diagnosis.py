@@ -41,18 +41,20 @@ class Diagnosis:
     r_hat : (dim,)
         R-hat of each coordinate: 1 where the chains agree, inf where none moves.
     ess_bulk, ess_tail : (dim,)
-        Effective sample sizes of all draws together, for the middle and for the tails.
+        Effective sample sizes of all draws together, for the middle and for the tails of the
+        distribution of each coordinate.
     mcse_mean : (dim,)
-        Standard error of the mean, in the units of the draws.
+        Standard error of the mean of each coordinate, in the units of the draws; inf for a
+        coordinate that never varies.
     autocorrelation_time : (dim,)
-        Number of draws for each effective one, for the mean.
+        Number of draws that estimate the mean of a coordinate as well as one independent draw.
     repeats : (n_chains,) int
-        Number of draws equal to the one before: zero chords and rejected moves.
+        Number of draws equal to the draw before, as zero chords and rejected moves leave them.
     longest_holding_time : (n_chains,) int
         Largest number of consecutive draws on one point.
     cells_missed : (n_chains,) int
-        Number of cells, of up to 16 with equal numbers of all draws, that a chain never entered
-        although it made enough draws.
+        Number of cells that each chain never entered although it made enough draws. All draws
+        together are divided into up to 16 cells with equal numbers of draws.
     separated : (n_chains, n_chains) bool
         Whether the draws of two chains can be distinguished by their positions, so that the
         chains are in different regions, however finely interleaved.
@@ -79,7 +81,7 @@ class Diagnosis:
 
     @property
     def message(self) -> str:
-        """The verdict in one sentence."""
+        """The verdict in one sentence: converged, or not converged with all reasons."""
         if self.reasons:
             return 'not converged: ' + '; '.join(self.reasons)
         ess = min(self.ess_bulk.min(), self.ess_tail.min())
@@ -95,7 +97,7 @@ def diagnose(draws: ArrayLike) -> Diagnosis:
     A stuck chain is never called converged, whatever its R-hat (chains that do not move agree
     perfectly), nor are chains that keep to different regions. No diagnostic detects a region that
     no chain has entered: chains that all start at one point show how fast they leave it, and no
-    more. ``separation`` states what pairs of chains cannot show.
+    more. Module ``separation`` states what a comparison of two chains cannot detect.
 
     Parameters
     ----------
@@ -136,7 +138,16 @@ def diagnose(draws: ArrayLike) -> Diagnosis:
 
 
 def check_draws(draws: ArrayLike) -> Floats:
-    """Return draws (n_chains, n_draws, dim), finite and enough of them, or raise RequestError."""
+    """
+    Return draws as a float64 array (n_chains, n_draws, dim).
+
+    Raises
+    ------
+    RequestError
+        When the draws have another shape, are not finite, or are fewer than ``DRAWS_MIN`` of each
+        chain.
+
+    """
     try:
         array = np.asarray(draws, dtype=np.float64)
     except (TypeError, ValueError):
@@ -174,7 +185,7 @@ def _signs_of_sticking(draws: Floats, statistics: Diagnosis, n_cells: int) -> It
 
 
 def _signs_of_separation(pairs: Separation) -> Iterator[str]:
-    """Yield the reason that concerns pairs of chains, with the pair that differs most."""
+    """Yield one reason, naming the pair of chains that differs most, if any pair is separated."""
     n_separated = int(np.triu(pairs.separated).sum())
     if n_separated == 0:
         return

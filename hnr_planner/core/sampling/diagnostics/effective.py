@@ -2,10 +2,10 @@
 Effective sample size (ESS), R-hat and autocorrelation time of one quantity of several chains.
 
 ``chains`` is (n_chains, n_draws), with 4 draws or more. Every chain is split in two halves, so
-that a drift within one chain shows as a difference between two. The formulas are those of Vehtari
-et al. (2021), with Geyer's initial monotone sequence, and give arviz's numbers. They differ from
-arviz where nothing varies: constant chains count as a single draw here, and as independent draws
-in arviz.
+that a drift within one chain shows as a difference between its halves. The formulas are those of
+Vehtari et al. (2021), with Geyer's initial monotone sequence, and give arviz's numbers. They
+differ from arviz where nothing varies: constant chains count as a single draw here, and as
+independent draws in arviz.
 """
 
 import math
@@ -23,25 +23,26 @@ def r_hat(chains: Floats) -> float:
     Return R-hat: the spread of all chains together over that within chains; 1 where they agree.
 
     It is the larger of two values: that of the rank-normalised draws, and that of the folded
-    draws, which detects chains of equal mean and different spread. inf where no chain moves.
+    draws, which detects chains of equal mean and different spread. It is inf when no half of a
+    chain moves.
     """
     halves = split(chains)
     return max(_r_hat(rank_normalised(halves)), _r_hat(rank_normalised(folded(halves))))
 
 
 def ess_bulk(chains: Floats) -> float:
-    """Return the bulk ESS: effective sample size for the middle of the law."""
+    """Return the bulk ESS: the effective sample size of the rank-normalised draws."""
     return effective_size(rank_normalised(split(chains)))
 
 
 def ess_tail(chains: Floats) -> float:
-    """Return the tail ESS: the smaller effective sample size of the two ``TAILS``."""
+    """Return the tail ESS: the smaller effective sample size for the two quantiles ``TAILS``."""
     quantiles = np.quantile(chains, TAILS)
     return min(effective_size(split((chains <= q).astype(float))) for q in quantiles)
 
 
 def ess_mean(chains: Floats) -> float:
-    """Return the effective sample size for the mean."""
+    """Return the effective sample size for the mean of the quantity, over all chains together."""
     return effective_size(split(chains))
 
 
@@ -49,7 +50,8 @@ def time_within(chains: Floats) -> float:
     """
     Return the autocorrelation time [draws] within chains, each about its own mean.
 
-    For chains confined to different regions it is the time within these regions.
+    For chains confined to different regions it is the time within these regions. It is inf when no
+    half of a chain moves.
     """
     covariances = _autocovariances(_rescaled(split(chains)))
     if covariances[0] == 0.0:
@@ -58,13 +60,21 @@ def time_within(chains: Floats) -> float:
 
 
 def split(chains: Floats) -> Floats:
-    """Return all first halves, then all second halves: (2 n_chains, n_draws // 2)."""
+    """
+    Return the first halves of all chains, then the second halves: (2 n_chains, n_draws // 2).
+
+    The middle draw of an odd number of draws is left out.
+    """
     half = chains.shape[1] // 2
     return np.concatenate([chains[:, :half], chains[:, -half:]])
 
 
 def effective_size(chains: Floats) -> float:
-    """Return the effective sample size for the mean of chains (m, n), which are not split."""
+    """
+    Return the effective sample size for the mean of chains (m, n), which are not split here.
+
+    It is 1 when all values are equal.
+    """
     m, n = chains.shape
     chains = _rescaled(chains)
     if not chains.any():
@@ -76,14 +86,14 @@ def effective_size(chains: Floats) -> float:
 
 
 def _rescaled(chains: Floats) -> Floats:
-    """Return centred values in [-1, 1], whose squares neither underflow nor overflow."""
+    """Return the values less their mean, scaled into [-1, 1]; zeros if all values are equal."""
     centred = chains - chains.mean()
     largest = np.abs(centred).max()
     return centred / largest if np.ptp(chains) > 0.0 else np.zeros_like(chains)
 
 
 def _r_hat(chains: Floats) -> float:
-    """Return the R-hat of chains (m, n) as they are; inf where none varies."""
+    """Return the R-hat of chains (m, n), neither split nor normalised; inf if none varies."""
     n = chains.shape[1]
     within = chains.var(axis=1, ddof=1).mean()
     if within == 0.0:
@@ -106,7 +116,7 @@ def _autocorrelation_time(autocorrelations: Floats, n_draws: int) -> float:
     Return the sum of the autocorrelations over all lags, negative ones included [draws].
 
     For a reversible chain the sums over two neighbouring lags are positive and decreasing: the
-    first one that is not positive, and all after it, are noise (Geyer, "Practical Markov chain
+    first sum that is not positive, and all later sums, are noise (Geyer, "Practical Markov chain
     Monte Carlo", 1992, Section 3.3). The effective size of antithetic chains is limited to
     n log10(n) draws.
     """

@@ -1,9 +1,9 @@
 """
-Holding times: numbers of consecutive draws of a chain on one point.
+Holding times: numbers of consecutive draws of a chain that are the same point.
 
-All ``draws`` are (n_chains, n_draws, dim). A walk repeats its point where the chord contains no
-other number (a zero chord), and where it rejects a move. Long holding times are the sign of a
-stuck chain in draws alone.
+Every argument ``draws`` is (n_chains, n_draws, dim). A walk repeats its point where the chord
+contains no other number (a zero chord), and where it rejects a move. Long holding times are the
+sign of a stuck chain in draws alone.
 """
 
 from hnr_planner.core.checks import Floats
@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 
 def repeats(draws: Floats) -> NDArray[np.int64]:
-    """Return the number of draws of each chain (n_chains,) that equal the one before."""
+    """Return the number of draws of each chain (n_chains,) that equal the draw before."""
     return _repeated(draws).sum(axis=1)
 
 
@@ -25,10 +25,10 @@ def longest_holding_time(draws: Floats) -> NDArray[np.int64]:
 
 
 def frozen(draws: Floats) -> NDArray[np.bool_]:
-    """Return which coordinates of each chain never change: (n_chains, dim) bool."""
+    """Return (n_chains, dim) bool: whether a coordinate has one value in all draws of a chain."""
     return (draws == draws[:, :1]).all(axis=1)
 
 
 def _repeated(draws: Floats) -> NDArray[np.bool_]:
-    """Return which draws (n_chains, n_draws - 1) equal the one before."""
+    """Return (n_chains, n_draws - 1) bool: whether draw k + 1 of a chain equals draw k."""
     return (draws[:, 1:] == draws[:, :-1]).all(axis=2)

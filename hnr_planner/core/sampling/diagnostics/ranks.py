@@ -20,13 +20,13 @@ def rank_normalised(values: Floats) -> Floats:
 
 
 def folded(values: Floats) -> Floats:
-    """Return the distances from the median: large in both tails."""
+    """Return the distance of every value from the median of all values, in the same shape."""
     return np.abs(values - np.median(values))
 
 
 @lru_cache(maxsize=1)
 def _scores(n: int) -> Floats:
-    """Return the quantiles (2 n - 1,) of the ranks 1, 1.5, ..., n; the last call is cached."""
+    """Return the normal quantiles (2 n - 1,) of ranks 1, 1.5, ..., n; cache the last result."""
     below = (np.arange(1.0, (n + 1) / 2 + 0.25, 0.5) - 0.375) / (n + 0.25)
     lower = np.fromiter(map(NormalDist().inv_cdf, below.tolist()), float, len(below))
     scores = np.concatenate([lower, -lower[-2::-1]])

@@ -2,15 +2,17 @@
 Pairs of chains that occupy different points of the set: a classifier two-sample test.
 
 The first half of every chain trains a nearest-neighbour classifier on the joint coordinates: it
-assigns a point to the chain of the nearest draw. The second half tests it. Chains of the same law
-cannot be distinguished. Where draws of two chains are classified better than by chance, the chains
-keep to different regions, even if these are so finely interleaved that no marginal differs.
+assigns a point to the chain of the nearest draw. The second half tests the classifier. Chains of
+the same distribution cannot be distinguished. Where draws of two chains are classified better than
+by chance, the chains keep to different regions, even if these are so finely interleaved that no
+marginal differs.
 
 False alarms. Let C[i, j] count the test draws of chain i that are assigned to chain j. Given the
-classifier, independent draws of one law are assigned to i or j independently of their chain, so
-that C[i, i], given the row and column sums of the 2 x 2 table of i and j, is hypergeometric.
-Hoeffding's bound (1963, Theorems 1 and 4) on its tail, summed over all pairs and all lags that may
-be chosen, keeps the probability of any alarm below ``FALSE_ALARM``, for any number of draws.
+classifier, independent draws of one distribution are assigned to i or j independently of their
+chain, so that C[i, i], given the row and column sums of the 2 x 2 table of i and j, is
+hypergeometric. Hoeffding's bound (1963, Theorems 1 and 4) on its tail, summed over all pairs and
+all lags that may be chosen, keeps the probability of any alarm below ``FALSE_ALARM``, for any
+number of draws.
 
 What it cannot detect: regions much smaller than the distance between neighbouring draws, which in
 many dimensions is a large distance; and regions that all chains enter, or that none enters.
@@ -38,10 +40,10 @@ class Separation(NamedTuple):
     Attributes
     ----------
     separated : (n_chains, n_chains) bool
-        Whether the draws of two chains can be distinguished; symmetric.
+        Whether the draws of chains i and j can be distinguished; symmetric, False for i = j.
     accuracy : (n_chains, n_chains)
-        Fraction of the draws of both chains that are assigned to the right one of the two; nan
-        where none is assigned to either.
+        Of the test draws of chains i and j that are assigned to one of these two chains, the
+        fraction assigned to their own chain; nan if there are no such draws, and for i = j.
 
     """
 
@@ -76,10 +78,12 @@ def compare_pairs(draws: Floats, time: float) -> Separation:
 
 def split(draws: Floats, time: float) -> tuple[Floats, Floats, int]:
     """
-    Split chains into training and test draws, each (n_chains, k, dim), in units of the spread.
+    Return training draws, test draws, and the number of lags that could have been chosen.
 
-    The test draws are a lag apart that is a power of two, so that few lags can be chosen at all;
-    their number is the third value. Constant coordinates are dropped.
+    Draws are (n_chains, k, dim), each array with its own k, in units of each coordinate's standard
+    deviation over the training draws. The distance between test draws in the chain, the lag, is a
+    power of two, so that few lags can be chosen. Coordinates that are constant over the training
+    draws are dropped.
     """
     n_chains, n_draws, dim = draws.shape
     n_lags = n_draws.bit_length()
@@ -100,7 +104,11 @@ def split(draws: Floats, time: float) -> tuple[Floats, Floats, int]:
 
 
 def assignments(training: Floats, testing: Floats) -> NDArray[np.int64]:
-    """Return how many test draws of each chain are assigned to each (n_chains, n_chains)."""
+    """
+    Return counts (n_chains, n_chains): how many test draws of chain i are assigned to chain j.
+
+    All counts are 0 if there are no test draws, or if no coordinate varies.
+    """
     from scipy.spatial import KDTree  # a quarter of a second, which other diagnostics do without
 
     n_chains, n_training, dim = training.shape
@@ -114,9 +122,10 @@ def assignments(training: Floats, testing: Floats) -> NDArray[np.int64]:
 
 def log_tail(counts: NDArray[np.int64]) -> Floats:
     """
-    Bound the log probability (n_chains, n_chains) of as many right assignments by chance.
+    Bound the log probability that chance assigns as many draws of chains i and j rightly.
 
-    The tables of i, j and of j, i bound the same event; both entries are the smaller bound.
+    ``counts`` are those of ``assignments``; the result is (n_chains, n_chains). The 2 x 2 tables
+    of i, j and of j, i bound the same probability; both entries are the smaller bound.
     """
     right = np.diag(counts).astype(np.float64)[:, None]
     of_chain, to_chain = right + counts, right + counts.T
@@ -128,7 +137,13 @@ def log_tail(counts: NDArray[np.int64]) -> Floats:
 
 
 def _hoeffding(successes: Floats, n: Floats, marked: Floats, total: Floats) -> Floats:
-    """Bound log P(X >= successes), X the marked ones of n drawn from total: -n KL(X / n, p)."""
+    """
+    Return a bound on log P(X >= successes), for a hypergeometric X, by Hoeffding's inequality.
+
+    X is the number of marked items among ``n`` items drawn from ``total``, of which ``marked`` are
+    marked. The bound is -n KL(successes / n, marked / total), and 0 where X is expected to be as
+    large.
+    """
     with np.errstate(divide='ignore', invalid='ignore'):
         q, p = successes / n, marked / total
         kl = np.where(q > 0.0, q * np.log(q / p), 0.0)
