@@ -1,10 +1,10 @@
 """
 The paper's experiments: each claim measured again, with its figure and its numbers.
 
-``registry`` lists them. Each is a module or package with one value ``EXPERIMENT``: a list of
-cases, a pure function that measures one case with one seed, and functions that turn the results
-into a figure and tables. ``conduct`` runs the cases and writes the files. ``docs/`` has the
-results.
+``registry`` lists the experiments. Each is a module or package with one value ``EXPERIMENT``: a
+function that returns the cases, a pure function that measures one case with one seed, and
+functions that turn the results into a figure and tables. ``conduct`` runs the cases and writes the
+files. ``docs/`` has the results.
 """
 
 from hnr_planner.experiments.registry import ExperimentEntry, EXPERIMENTS, load, NAMES

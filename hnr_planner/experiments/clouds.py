@@ -56,7 +56,7 @@ TABLE_COLUMNS = {
 
 
 class Case(NamedTuple):
-    """A width of the corridor [m] and a planner, or independent uniform points."""
+    """A case: width of the corridor [m], and a planner or ``UNIFORM`` for independent points."""
 
     width: float
     algorithm: str
@@ -73,11 +73,12 @@ class Straightened(NamedTuple):
     width : float
         Width of the corridor [m].
     way : (rows * columns,)
-        Distance of each cell from the start along the corridor, as a fraction of the goal's.
+        Distance of each cell from the start along the corridor, as a fraction of the distance of
+        the goal; row-major.
     edges : (N_SLICES + 1,)
-        Edges of the slices of equal area, as fractions of the way.
+        Edges of the slices of equal area, as values of ``way``.
     layers : (N_LAYERS,)
-        Fraction of the area in each layer.
+        Fraction of the free area in each layer, from the wall to the middle.
 
     """
 
@@ -94,7 +95,7 @@ def cases() -> list[Case]:
 
 
 def run(case: Case, seed: int) -> dict[str, float]:
-    """Search once and return the measures of its samples."""
+    """Search once, or draw uniform points, and return the measures of the samples."""
     corridor = straightened(case.width)
     rng = np.random.default_rng(seed)
     if case.algorithm == UNIFORM:
@@ -152,7 +153,11 @@ def _searched(corridor: Straightened, result: PlanResult) -> dict[str, float]:
 
 
 def _arrivals(way: NDArray) -> NDArray[np.float64]:
-    """Return the number of samples (N_PARTS,) before the first one in each section of the way."""
+    """
+    Return the number of samples (N_PARTS,) before the end of each section of the way is reached.
+
+    ``way`` (k,) has the fraction of the way at each sample, in the order of the search.
+    """
     farthest = np.maximum.accumulate(way)
     fractions = np.linspace(0.0, 1.0, N_PARTS + 1)[1:]
     # The search ends in the goal's region, which begins before the goal.
@@ -160,7 +165,7 @@ def _arrivals(way: NDArray) -> NDArray[np.float64]:
 
 
 def _way(corridor: Straightened, points: NDArray) -> NDArray[np.float64]:
-    """Return the fraction of the way (k,) at points; on a wall, that of a free cell beside it."""
+    """Return the fraction of the way (k,) at points (k, 2); on walls, in a free cell beside."""
     way = corridor.way[_cells(corridor.space, points)]
     if not np.isfinite(way).all():
         for offset in (-1e-6, 1e-6):
@@ -173,10 +178,10 @@ def _evenness(
     corridor: Straightened, points: NDArray, rng: np.random.Generator
 ) -> dict[str, float]:
     """
-    Return the density of the samples in each slice, and ``uneven``.
+    Return the density of the samples in each slice (1 for uniform points), and ``uneven``.
 
-    ``uneven`` is the total variation distance between the shares of ``N_EVEN`` samples in the
-    slices and equal shares: 0 is perfectly even. It is nan for a run of fewer samples.
+    ``uneven`` is the total variation distance between the fractions of ``N_EVEN`` random samples
+    in the slices and equal fractions: 0 is perfectly even. It is nan for a run of fewer samples.
     """
     way = _way(corridor, points)
     uneven = np.nan
@@ -188,13 +193,17 @@ def _evenness(
 
 
 def _shares(way: NDArray, edges: NDArray) -> NDArray[np.float64]:
-    """Return the fraction of points in each slice (N_SLICES,)."""
+    """Return the fraction (N_SLICES,) of points, given by their ``way`` (k,), in each slice."""
     counts = np.histogram(np.clip(way, edges[0], edges[-1]), edges)[0]
     return counts / len(way)
 
 
 def _nearness(corridor: Straightened, points: NDArray) -> dict[str, float]:
-    """Return the fraction of the samples on a wall, and their density in each layer."""
+    """
+    Return the fraction of points (k, 2) on a wall, and their density in each layer.
+
+    The density of uniform points is 1.
+    """
     densities = _in_layers(corridor.space, corridor.width, points) / corridor.layers
     return {
         'on_wall': float((corridor.space.clearance(points) < ON_WALL).mean()),
@@ -203,7 +212,11 @@ def _nearness(corridor: Straightened, points: NDArray) -> dict[str, float]:
 
 
 def _in_layers(space: GridSpace, width: float, points: NDArray) -> NDArray[np.float64]:
-    """Return the fraction of points in each layer; corners of the corridor count as the middle."""
+    """
+    Return the fraction (N_LAYERS,) of points (k, 2) in each layer.
+
+    Points farther from walls than half the width, in corners, count as the middle layer.
+    """
     depth = space.clearance(points) / (width / 2.0)
     layers = np.minimum((depth * N_LAYERS).astype(int), N_LAYERS - 1)
     return np.bincount(layers, minlength=N_LAYERS) / len(points)

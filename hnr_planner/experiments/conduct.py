@@ -1,4 +1,4 @@
-"""Conduct an experiment: compute missing rows on all cores, then write figure and tables."""
+"""Conduct an experiment: compute missing rows in parallel, then write figure and tables."""
 
 from __future__ import annotations
 
@@ -22,7 +22,9 @@ def conduct(
     fresh: bool = False,
 ) -> Results:
     """
-    Run every case of an experiment with the seeds 0 to ``runs - 1``.
+    Run every case of an experiment with the seeds 0 to ``runs - 1`` and return the results.
+
+    Only rows that the CSV file does not have yet are computed.
 
     joblib computes the rows, by default in as many processes as there are cores; a call inside
     ``joblib.parallel_config(backend='dask')`` sends them to a cluster. The rows and their order in
@@ -65,7 +67,7 @@ def conduct(
 def _rows(
     experiment: Experiment, file: ResultsFile, runs: int, n_jobs: int
 ) -> Iterator[tuple[object, int, dict[str, float]]]:
-    """Yield the missing rows in the order of the file, with a progress bar."""
+    """Yield (case, seed, measured columns) of every missing row, in order, with a progress bar."""
     done, missing = file.n_rows, file.tasks(runs)
     if not missing:
         return
@@ -80,7 +82,7 @@ def _rows(
 
 
 def _signature(experiment: Experiment, results: Results, made: dict[str, str]) -> str:
-    """Return one line that names runs, seeds, command and versions."""
+    """Return the line at the foot of figure and tables: runs, seeds, command and versions."""
     return (
         f'{results.runs} runs of each, seeds 0 to {results.runs - 1}. python -m hnr_planner '
         f'experiment {experiment.name} --runs {results.runs}; hnr_planner {made["hnr_planner"]}, '

@@ -1,9 +1,10 @@
 """
 Transitions of Hit-and-Run and RRT under kinematics (paper, section "Kinematic Planning").
 
-The paper claims that Hit-and-Run needs fewer transitions, by as much as a factor of three, in a
-corridor with two turns, for a robot of bounded acceleration that the boundary stops. It does not
-define a transition: both readings are measured, and the integration steps besides.
+The paper claims that Hit-and-Run needs fewer transitions than RRT, by as much as a factor of
+three, in a corridor with two turns, for a robot of bounded acceleration that the boundary stops.
+The paper does not define a transition: both readings (``TRANSITIONS``) are measured, and also the
+integration steps.
 """
 
 from functools import cache
@@ -39,7 +40,7 @@ LAYOUT: list[Any] = [
 
 
 class Case(NamedTuple):
-    """Shape and width [m] of the corridor, planner, and definition of a transition."""
+    """A case: shape and width [m] of a corridor, planner, and definition of a transition."""
 
     shape: str
     width: float
@@ -48,7 +49,7 @@ class Case(NamedTuple):
 
 
 def cases() -> list[Case]:
-    """Return every search through every corridor."""
+    """Return every planner with both definitions of a transition in every corridor."""
     return [
         Case(shape, width, algorithm, transition)
         for shape in SHAPES
@@ -59,7 +60,7 @@ def cases() -> list[Case]:
 
 
 def run(case: Case, seed: int) -> dict[str, float]:
-    """Search once and return transitions, integration steps and duration [s]."""
+    """Search once; return transitions, integration steps and duration [s], nan if unsolved."""
     result = search(case, seed)
     return {
         'transitions': result.iterations,
@@ -69,7 +70,7 @@ def run(case: Case, seed: int) -> dict[str, float]:
 
 
 def search(case: Case, seed: int) -> TrajectoryResult:
-    """Search once from rest, without time limit and without shortening."""
+    """Search for one trajectory from rest, without time limit and without shortening."""
     made, space = built(case.shape, case.width)
     return plan_trajectory(
         space,
@@ -89,13 +90,13 @@ def search(case: Case, seed: int) -> TrajectoryResult:
 
 @cache
 def built(shape: str, width: float) -> tuple[Corridor, GridSpace]:
-    """Build a corridor and its space."""
+    """Build the corridor of a shape in ``SHAPES`` and a width [m]; return it and its space."""
     made = SHAPES[shape](width)
     return made, GridSpace.from_blocked(made.blocked, made.resolution)
 
 
 def figure(results: Results) -> Figure:
-    """Draw transitions and steps against the width, and the median run of each planner."""
+    """Draw transitions and steps against the width, and each planner's run of median length."""
     drawn = new_figure(10.0, 6.8)
     axes = drawn.subplot_mosaic(LAYOUT, height_ratios=(1.3, 1))
     for name, shape, column, title, y in (

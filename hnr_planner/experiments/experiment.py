@@ -17,9 +17,9 @@ class Experiment:
     Attributes
     ----------
     entry : ExperimentEntry
-        Its line in the registry: name, module and summary.
+        Entry of the experiment in the registry: name, module and summary.
     runs : int
-        Number of runs of every case in ``docs/``.
+        Number of runs of every case in the results that ``docs/`` shows.
     cases : callable
         Returns the cases: NamedTuples of strings and numbers, all of one type. Their fields are
         columns of the results.
@@ -28,9 +28,9 @@ class Experiment:
         case. It is a pure function at the top level of its module, so that other processes can
         import it.
     figure : callable
-        Draws the results.
+        ``figure(results)`` returns a matplotlib figure of the results.
     tables : callable
-        Returns the tables of the results as Markdown.
+        ``tables(results)`` returns the tables of the results as Markdown.
 
     """
 
@@ -43,5 +43,5 @@ class Experiment:
 
     @property
     def name(self) -> str:
-        """Name of its command, its page and its files."""
+        """Name of the experiment on the command line, and of its page and files."""
         return self.entry.name

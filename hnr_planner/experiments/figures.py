@@ -23,7 +23,7 @@ from numpy.typing import ArrayLike, NDArray
 
 
 class Look(NamedTuple):
-    """Label, colour and matplotlib marker of an algorithm."""
+    """The look of an algorithm in figures: label, colour and matplotlib marker."""
 
     label: str
     colour: str
@@ -46,7 +46,7 @@ MANY = 15
 
 
 def new_figure(width: float, height: float) -> Figure:
-    """Return an empty figure of this size [in], made without pyplot's global state."""
+    """Return an empty figure of a width and height [inches], without pyplot's global state."""
     return Figure(figsize=(width, height), layout='constrained')
 
 
@@ -72,7 +72,7 @@ def draw_profile(
     label: str | None = None,
     line: str = '-',
 ) -> None:
-    """Draw means at ``x`` (k,) as a line, with their intervals as a band."""
+    """Draw ``k`` means at ``x`` (k,) as a line, and their 95 % intervals as a band around it."""
     values, halves = np.array(means).T
     axes.fill_between(
         x, values - halves, values + halves, color=look.colour, alpha=BAND, linewidth=0
@@ -96,7 +96,12 @@ def draw_bars(
     groups: Mapping[str, Sequence[Mean]],
     colours: Sequence[str],
 ) -> None:
-    """Draw a bar for each name in each group; later groups are paler and below."""
+    """
+    Draw one horizontal bar with its 95 % interval for each name in each group.
+
+    The bars of a name lie together. Those of later groups are paler and below those of earlier
+    ones. ``groups`` has one mean for each name, and ``colours`` one colour for each name.
+    """
     thickness = 0.8 / len(groups)
     at = np.arange(len(names))[::-1]
     for k, (group, means) in enumerate(groups.items()):
@@ -114,22 +119,26 @@ def draw_bars(
 
 
 def _paler(colour: str, times: int) -> NDArray[np.float64]:
-    """Return an RGB colour mixed with 55 % white, this many times."""
+    """Return a colour (3,) as RGB in [0, 1], mixed with 55 % white ``times`` times."""
     return 1.0 - 0.45**times * (1.0 - np.array(to_rgb(colour)))
 
 
 def legend(axes: Axes, location: Location = 'best') -> None:
-    """Add a legend at a location that matplotlib names."""
+    """Add a legend without a frame at a location, one of matplotlib's names."""
     axes.legend(loc=location, frameon=False, fontsize=9, labelcolor=INK)
 
 
 def sign(figure: Figure, text: str) -> None:
-    """Print what was run at the foot of a figure."""
+    """Print ``text`` at the foot of a figure, in small type."""
     figure.supxlabel(text, x=0.01, ha='left', fontsize=7.5, color=FAINT_INK)
 
 
 def save(figure: Figure, file: Path) -> None:
-    """Write a figure; the same results give the same bytes, and text stays text in an SVG file."""
+    """
+    Write a figure to a file whose ending selects the format.
+
+    In an SVG file the same results give the same bytes, and text stays text.
+    """
     with rc_context({'svg.hashsalt': 'hnr_planner', 'svg.fonttype': 'none'}):
         figure.savefig(
             file, dpi=200, facecolor='white', metadata={'Date': None}, bbox_inches='tight'

@@ -1,4 +1,4 @@
-"""The median run of a case, by its number of transitions, to be drawn in a figure."""
+"""The run of a case with the median number of transitions, to be drawn in a figure."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ DOT = 0.05
 def median_run(
     results: Results, case: Any, search: Callable[[Any, int], SearchResult]
 ) -> SearchResult:
-    """Repeat the search of the run with the median number of transitions of a case."""
+    """Repeat the search of a case with the seed of the run of median transitions; return it."""
     runs = results.of(case)
     middle = np.argsort(runs['transitions'], kind='stable')[len(runs) // 2]
     return search(case, int(runs['seed'][middle]))
 
 
 def draw_run(axes: Axes, corridor: Corridor, run: SearchResult, name: str) -> None:
-    """Draw the samples of a run through a corridor, start, goal and the goal's region."""
+    """Draw the map of a corridor, the samples of a run, start, goal and the goal region."""
     draw_map(axes, corridor.occupancy)
     for image in axes.images:
         image.set_interpolation('none')  # the cells themselves: sharp at any size, few bytes

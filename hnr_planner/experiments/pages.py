@@ -1,9 +1,9 @@
 """
 Update the tables in the pages of ``docs/`` from the tables that the experiments write.
 
-A page shows some rows of ``docs/figures/NAME.md``. A table is identified by its header and a row
-by its first cell, so the numbers of a page can be updated after a new run. The text around the
-tables is written by hand.
+A page, ``docs/NAME.md``, shows some rows of ``docs/figures/NAME.md``. A table is identified by its
+header and a row by its first cell, so the numbers of a page can be updated after a new run. The
+text around the tables is written by hand.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ def refresh(docs: Path, name: str) -> None:
 
 def refreshed(page: str, numbers: str) -> str:
     """
-    Return a page whose rows are replaced by those of ``numbers``.
+    Return a page whose rows are replaced by the rows of ``numbers`` with the same first cell.
 
     Parameters
     ----------

@@ -2,7 +2,7 @@
 The experiments by name: one line for each, read by the command line, the pages and the tests.
 
 Neither numba nor matplotlib is imported here, so that ``--help`` is fast: ``load`` imports the
-module of an experiment when it is asked for. A new experiment is a module, or package, of
+module of one experiment. A new experiment is a module, or package, of
 ``hnr_planner.experiments`` with a value ``EXPERIMENT``, and a line in ``EXPERIMENTS``.
 """
 
@@ -22,11 +22,11 @@ class ExperimentEntry(NamedTuple):
     Attributes
     ----------
     name : str
-        Name of its command, its page and its files.
+        Name of the experiment on the command line, and of its page and files.
     module : str
         Full name of the module that defines ``EXPERIMENT``.
     summary : str
-        What it measures, in one line.
+        What the experiment measures, in one line.
 
     """
 

@@ -11,7 +11,12 @@ MIN_DISTANCE = 0.4
 
 
 def far_pairs(space: GridSpace, n_pairs: int, seed: int) -> NDArray[np.float64]:
-    """Draw distant starts and goals (n_pairs, 2, 2) [m]: cell centres in the largest component."""
+    """
+    Draw distant pairs of start and goal (n_pairs, 2, 2) [m] in the caller's frame.
+
+    The points are centres of cells in the largest component of the free space. Start and goal are
+    at least ``MIN_DISTANCE`` of the diagonal of that component's bounds apart.
+    """
     rng = np.random.default_rng(seed)
     rows, columns = np.nonzero(space.largest_component())
     diagonal = np.hypot(np.ptp(rows), np.ptp(columns))

@@ -26,17 +26,17 @@ from numpy.typing import NDArray
 
 
 class ResultsError(HnrError, ValueError):
-    """Error: a file of results does not belong to this experiment."""
+    """Error: a results file has rows of other cases, or of another version of the core."""
 
 
 class Mean(NamedTuple):
-    """A mean and half the width of its 95 % interval."""
+    """A mean and half the width of its 95 % interval; nan where the interval is unknown."""
 
     value: float
     half: float
 
     def __str__(self) -> str:
-        """Return both, rounded to two significant digits of the interval."""
+        """Return mean and half width, rounded to two significant digits of the half width."""
         if math.isnan(self.value):
             return '-'
         if not math.isfinite(self.half) or self.half == 0.0:
@@ -60,7 +60,7 @@ class Results:
         return self.columns[column]
 
     def where(self, **values: object) -> Results:
-        """Return the rows with the given values in the columns so named."""
+        """Return the rows in which each column named has the value given for it."""
         chosen = np.ones(len(self), dtype=bool)
         for name, value in values.items():
             chosen &= self[name] == value
@@ -71,7 +71,7 @@ class Results:
         return Results({name: column[chosen] for name, column in self.columns.items()})
 
     def of(self, case: Any) -> Results:
-        """Return the rows of a case."""
+        """Return the rows whose columns equal all fields of a case."""
         return self.where(**case._asdict())
 
     def distinct(self, column: str) -> list[Any]:
@@ -79,7 +79,11 @@ class Results:
         return list(dict.fromkeys(self[column].tolist()))
 
     def mean(self, column: str) -> Mean:
-        """Return the mean of a column with its normal 95 % interval, without nan and inf."""
+        """
+        Return the mean of a column of numbers, with its 95 % interval by the normal distribution.
+
+        Values that are nan or inf are left out; the mean is nan if no value is left.
+        """
         values = self[column]
         values = values[np.isfinite(values)]
         if len(values) == 0:
@@ -128,7 +132,7 @@ class ResultsFile:
         self.n_rows = max(len(whole) - 1, 0)
 
     def tasks(self, runs: int) -> list[tuple[Any, int]]:
-        """Return the cases and seeds whose rows are missing for this number of runs."""
+        """Return (case, seed) of each row missing for ``runs`` runs, in the file's order."""
         endless = ((case, seed) for seed in count() for case in self._cases)
         return list(islice(endless, self.n_rows, max(runs * len(self._cases), self.n_rows)))
 
@@ -144,7 +148,7 @@ class ResultsFile:
                 self.n_rows += 1
 
     def read(self, runs: int) -> Results:
-        """Return the results of the first ``runs`` runs of every case."""
+        """Return the results of the first ``runs`` runs of every case; the file must have them."""
         with self._file.open(encoding='utf-8', newline='') as file:
             header, *rows = list(csv.reader(file))
         columns = zip(*rows[: runs * len(self._cases)], strict=True)
@@ -153,7 +157,7 @@ class ResultsFile:
         )
 
     def _check_note(self) -> dict[str, str]:
-        """Refuse results that were computed with other sources of the core."""
+        """Return the note; raise ResultsError if rows are of other sources of the core."""
         note: dict[str, str] = json.loads(self._note.read_text(encoding='utf-8'))
         now = made_with()
         if note['core'] != now['core']:
@@ -164,7 +168,7 @@ class ResultsFile:
         return note
 
     def _check_rows(self, lines: list[str]) -> None:
-        """Refuse results of other cases."""
+        """Raise ResultsError unless ``lines`` are those of the cases, in order, after a header."""
         for number, row in enumerate(csv.reader(lines[1:])):
             seed, k = divmod(number, len(self._cases))
             expected = [str(value) for value in (*self._cases[k], seed)]
@@ -176,7 +180,7 @@ class ResultsFile:
 
 
 def made_with() -> dict[str, str]:
-    """Return what results depend on: versions and a digest of the core's sources."""
+    """Return what results depend on, by name: versions and a digest of the core's sources."""
     import numba
 
     return {

@@ -2,9 +2,9 @@
 Distance to obstacles along the paths of different planners (paper, Section 1).
 
 The paper claims that Hit-and-Run's paths are safer, since they are more likely to stay away from
-the boundary, while those of RRT tend to be close to it. Both are measured on maps of floors,
-beside the grid searches that most robots plan with, as found and after the shortening that a path
-gets before a robot follows it.
+the boundary, while those of RRT tend to be close to the boundary. The paths of both planners, and
+of the grid searches that most robots plan with, are measured on maps of floors: as found, and
+after the shortening that a path gets before a robot follows it.
 """
 
 from functools import cache
@@ -51,7 +51,7 @@ SHAPES = ('found', 'shortened')
 
 
 class Case(NamedTuple):
-    """A map (a generated floor or the stem of a file), a planner, the clearance requested [m]."""
+    """A case: map (a generated floor or the stem of a file), planner, requested clearance [m]."""
 
     place: str
     algorithm: str
@@ -59,7 +59,7 @@ class Case(NamedTuple):
 
 
 def cases() -> list[Case]:
-    """Return every planner on every map."""
+    """Return every planner on every generated floor and on the maps of ``MAPS_VARIABLE``."""
     return [Case(place, *planner) for place in [*FLOORS, *_robot_maps()] for planner in PLANNERS]
 
 
@@ -70,7 +70,7 @@ def _robot_maps() -> dict[str, Path]:
 
 
 def run(case: Case, seed: int) -> dict[str, float]:
-    """Plan between two far points and return the measures of the path, found and shortened."""
+    """Plan between two distant points; return the measures of the path, found and shortened."""
     space = space_of(case.place)
     (ends,) = far_pairs(space, 1, seed)
     path = _path(space, ends, case, seed)
@@ -85,7 +85,7 @@ def run(case: Case, seed: int) -> dict[str, float]:
 
 @cache
 def space_of(place: str) -> GridSpace:
-    """Return the space of the robot on a map by its name."""
+    """Return the space of the robot's centre on a map, given by its name in the cases."""
     occupancy = _occupancy(place)
     return GridSpace.from_occupancy(
         occupancy.data, occupancy.resolution, occupancy.origin, robot_radius=ROBOT_RADIUS
@@ -128,7 +128,7 @@ def measures(space: GridSpace, path: NDArray) -> dict[str, float]:
 
 
 def _resampled(path: NDArray) -> NDArray:
-    """Return points (k, 2) at equal distances along a path."""
+    """Return points (k, 2) at equal distances of about ``SPACING`` [m] along a path (m, 2)."""
     ends = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(path, axis=0).T))])
     n_points = min(max(2, int(ends[-1] / SPACING)), POINTS_MAX)
     at = np.linspace(0.0, ends[-1], n_points)
@@ -197,7 +197,7 @@ def _table(name: str, results: Results) -> str:
 
 
 def _mean(results: Results, planner: tuple[str, float], column: str) -> Mean:
-    """Return the mean over the maps; its interval does not include differences of maps."""
+    """Return the mean over the maps; the interval is of random runs on these maps only."""
     each = [results.of(Case(place, *planner)).mean(column) for place in results.distinct('place')]
     values, halves = np.array(each).T
     return Mean(float(values.mean()), math.hypot(*halves) / len(each))

@@ -1,8 +1,9 @@
 """
 Transitions of Hit-and-Run and RRT through a spiral (paper, section "Planning", position only).
 
-The paper claims that Hit-and-Run needs fewer transitions for all but the hardest problems, usually
-by a large margin, and that a wider middle arm makes the problem harder for RRT alone.
+The paper claims that Hit-and-Run needs fewer transitions than RRT for all but the hardest
+problems, usually by a large margin, and that a wider middle arm makes the problem harder for RRT
+alone.
 """
 
 from functools import cache
@@ -40,7 +41,7 @@ LAYOUT: list[Any] = [['even', 'fat'], ['hit_and_run', 'rrt']]
 
 
 class Case(NamedTuple):
-    """Widths of the arms and of the middle arm [m], algorithm, and goal test."""
+    """A case: widths of the arms and of the middle arm [m], algorithm, and goal test."""
 
     width: float
     middle: float
@@ -70,7 +71,7 @@ def run(case: Case, seed: int) -> dict[str, float]:
 
 
 def search(case: Case, seed: int) -> PlanResult:
-    """Search once, without time limit and without shortening."""
+    """Search for one path, without time limit and without shortening."""
     made, space = built(case.width, case.middle)
     return plan(
         space,
@@ -86,7 +87,7 @@ def search(case: Case, seed: int) -> PlanResult:
 
 @cache
 def built(width: float, middle: float) -> tuple[Corridor, GridSpace]:
-    """Build a spiral and its space."""
+    """Build the spiral of widths of the arms and the middle arm [m]; return it and its space."""
     if middle == width:
         made = spiral(width)
     else:

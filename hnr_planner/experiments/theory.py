@@ -37,7 +37,7 @@ LOOKS = {
 
 
 class Case(NamedTuple):
-    """Shape, ``rooms`` or ``spiral``, and width [m] of the door or of the corridor."""
+    """A case: shape, ``rooms`` or ``spiral``, and width [m] of the door or of the corridor."""
 
     shape: str
     width: float
@@ -45,7 +45,7 @@ class Case(NamedTuple):
 
 class Blocks(NamedTuple):
     """
-    A set of square blocks.
+    A set of square blocks, with some of them as the goal.
 
     Attributes
     ----------
@@ -54,7 +54,7 @@ class Blocks(NamedTuple):
     size : float
         Side of a block [m].
     free, goal : (rows, columns) bool
-        Blocks of the set, and blocks of the goal.
+        Whether each block belongs to the set, and whether to the goal.
 
     """
 
@@ -73,20 +73,20 @@ class Theory(NamedTuple):
 
 
 def cases() -> list[Case]:
-    """Return the rooms and the spirals."""
+    """Return the cases: two rooms with each width of door, and spirals of each width."""
     rooms = [Case('rooms', width) for width in DOORS]
     return rooms + [Case('spiral', width) for width in WIDTHS]
 
 
 def run(case: Case, seed: int) -> dict[str, float]:
-    """Walk from a uniform point into the goal and return the number of transitions."""
+    """Walk from a uniform point of the set until in the goal; return the number of transitions."""
     blocks = blocks_of(case)
     start = _uniform_point(blocks, np.random.default_rng(seed))
     return {'transitions': _transitions(blocks, start, seed)}
 
 
 def _transitions(blocks: Blocks, start: NDArray, seed: int) -> int:
-    """Return the steps until the walk is in the goal."""
+    """Return the number of steps until the walk from ``start`` (2,) [m] is first in the goal."""
     if _inside(blocks, blocks.goal, start[np.newaxis])[0]:
         return 0
     n_draws = 1000
@@ -99,7 +99,7 @@ def _transitions(blocks: Blocks, start: NDArray, seed: int) -> int:
 
 
 def _inside(blocks: Blocks, chosen: NDArray, points: NDArray) -> NDArray[np.bool_]:
-    """Return which points (k, 2) [m] lie in the chosen blocks (rows, columns)."""
+    """Return whether (k,) each point (k, 2) [m] lies in a chosen block (rows, columns)."""
     columns, rows = np.floor(points / blocks.size).astype(int).T
     inside: NDArray[np.bool_] = chosen[rows, columns]
     return inside
@@ -116,7 +116,7 @@ def _uniform_point(blocks: Blocks, rng: np.random.Generator) -> NDArray[np.float
 
 @cache
 def blocks_of(case: Case) -> Blocks:
-    """Build the set of a case."""
+    """Build the blocks of a case: two rooms or a spiral, with its goal."""
     return _rooms(case.width) if case.shape == 'rooms' else _spiral(case.width)
 
 
@@ -149,7 +149,7 @@ def _blocks(free: NDArray, goal: NDArray, size: float) -> Blocks:
 
 
 def _flow(blocks: Blocks) -> CellFlow:
-    """Return the flow between the free blocks, without the others' rounding errors."""
+    """Return the flow between the free blocks; blocked ones would only add rounding errors."""
     flow = cell_flow(blocks.space, blocks.free.shape, N_LINES)
     free = _inside(blocks, blocks.free, flow.centre)
     return CellFlow(flow.area[free], flow.flow[np.ix_(free, free)], flow.centre[free])

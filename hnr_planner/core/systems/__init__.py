@@ -1,4 +1,4 @@
-"""Systems: robots with inertia, their limits and their motion."""
+"""Systems: robots with inertia, their limits on speed and acceleration, and their motion."""
 
 from hnr_planner.core.systems.car import Car
 from hnr_planner.core.systems.double_integrator import DoubleIntegrator

@@ -1,8 +1,9 @@
 """
 A planar base with bounded speed, acceleration and curvature: a car, or a unicycle.
 
-Under constant controls it moves along a circular arc, whatever its speed, so the first contact
-with a boundary is found on the arc.
+Under a constant control the base moves along a circular arc, a straight line at curvature 0. The
+speed changes only when a point of the arc is reached, so the first contact with a boundary is
+found on the arc and converted to a time.
 """
 
 from dataclasses import dataclass
@@ -21,7 +22,7 @@ X, Y, HEADING, SPEED = range(4)
 
 
 class CarData(NamedTuple):
-    """A compiled car: its limits, in the kernel frame of a space."""
+    """A compiled car: its limits in the kernel frame of a space (its unit of length, seconds)."""
 
     max_acceleration: float
     max_speed: float
@@ -33,9 +34,10 @@ class Car(System):
     """
     A planar base that moves along its heading, forwards and backwards.
 
-    A state is (x, y, heading, speed) [m, m, rad, m/s], a speed below 0 goes backwards. A control
-    is (acceleration, curvature) [m/s^2, 1/m], curvature above 0 turns left. Curvature may jump:
-    a base that steers slowly stops for that, or follows with a small error.
+    A state is (x, y, heading, speed) [m, m, rad, m/s]; a speed below 0 goes backwards. A control
+    is (acceleration, curvature) [m/s^2, 1/m]; a curvature above 0 turns left. Curvature may jump
+    from one step to the next: a real base that steers slowly stops at the jump, or follows the
+    trajectory with a small error.
 
     Attributes
     ----------
@@ -62,12 +64,12 @@ class Car(System):
 
     @property
     def largest_acceleration(self) -> float:
-        """Largest change of the velocity (2,) in a second [m/s^2], that by turning included."""
+        """Largest rate of change [m/s^2] of the velocity (2,), by braking and turning together."""
         return math.hypot(self.max_acceleration, self.max_curvature * self.max_speed**2)
 
     @property
     def data(self) -> CarData:
-        """The compiled system in the caller's units."""
+        """The limits of the car as ``CarData``, in the caller's units."""
         return CarData(self.max_acceleration, self.max_speed, self.max_curvature)
 
     def velocity(self, state: Floats) -> Floats:
@@ -76,11 +78,16 @@ class Car(System):
         return speed * np.array([math.cos(heading), math.sin(heading)])
 
     def speed(self, state: Floats) -> float:
-        """Return the speed [m/s] of a state (4,), at least 0 also backwards."""
+        """Return the magnitude [m/s], at least 0, of the signed speed of a state (4,)."""
         return abs(float(state[SPEED]))
 
     def lengths(self, states: Floats, controls: Floats, durations: Floats) -> Floats:
-        """Return (k,) lengths [m] of motions of states (k, 4) in durations (k,) [s]."""
+        """
+        Return how far (k,) [m] the base drives from states (k, 4) in durations (k,) [s].
+
+        Controls (k, 2) are constant for their durations. Where the speed changes its sign, the
+        ways forwards and backwards are added.
+        """
         before, pull = states[:, SPEED], controls[:, 0]
         after = before + pull * durations
         turns = before * after < 0.0
@@ -88,14 +95,14 @@ class Car(System):
         return np.where(turns, there_and_back, np.abs(before + after) / 2.0 * durations)
 
     def compiled(self, space: Space) -> CarData:
-        """Return the compiled system in the kernel frame of a space."""
+        """Return the limits of the car as ``CarData`` in the kernel frame of a space."""
         scale = space.scale
         return CarData(
             self.max_acceleration / scale, self.max_speed / scale, self.max_curvature * scale
         )
 
     def to_kernel(self, space: Space, states: Floats) -> Floats:
-        """Convert states (..., 4) to the kernel frame of a space."""
+        """Convert states (..., 4) from the caller's frame to the kernel frame of a space."""
         inside = np.empty_like(states)
         inside[..., :HEADING] = space.to_kernel(states[..., :HEADING])
         inside[..., HEADING] = states[..., HEADING] + _yaw(space)
@@ -103,7 +110,7 @@ class Car(System):
         return inside
 
     def from_kernel(self, space: Space, states: Floats) -> Floats:
-        """Convert states (..., 4) from the kernel frame of a space."""
+        """Convert states (..., 4) from the kernel frame of a space to the caller's frame."""
         outside = np.empty_like(states)
         outside[..., :HEADING] = space.from_kernel(states[..., :HEADING])
         outside[..., HEADING] = states[..., HEADING] - _yaw(space)
@@ -111,16 +118,16 @@ class Car(System):
         return outside
 
     def controls_to_kernel(self, space: Space, controls: Floats) -> Floats:
-        """Convert controls (k, 2) to the kernel frame of a space."""
+        """Convert controls (k, 2) from the caller's units to the kernel frame of a space."""
         return controls * (1.0 / space.scale, space.scale)
 
     def controls_from_kernel(self, space: Space, controls: Floats) -> Floats:
-        """Convert controls (k, 2) from the kernel frame of a space."""
+        """Convert controls (k, 2) from the kernel frame of a space to the caller's units."""
         return controls * (space.scale, 1.0 / space.scale)
 
 
 def _yaw(space: Space) -> float:
-    """Return the angle [rad] by which directions turn when converted to the kernel frame."""
+    """Return the angle [rad] by which a conversion to the kernel frame turns directions."""
     x, y = vectors_to_kernel(space, np.array([1.0, 0.0]))
     return math.atan2(y, x)
 
@@ -128,7 +135,7 @@ def _yaw(space: Space) -> float:
 @move.register(CarData)
 @kernel
 def _move(system, state, control, duration, end):
-    """Write the state (4,) after a duration [s] along an arc."""
+    """Write to ``end`` (4,) the state after a duration [s] of motion along an arc."""
     arc_length = duration * (state[SPEED] + duration * control[0] / 2.0)
     arc = Arc(state[:HEADING], state[HEADING], control[1])
     x, y = at(coordinate(arc, 0), arc_length), at(coordinate(arc, 1), arc_length)
@@ -140,7 +147,11 @@ def _move(system, state, control, duration, end):
 @contact.register(CarData)
 @kernel
 def _contact(system, space, state, control, duration):
-    """Return the time of contact before the speed changes its sign, or after that."""
+    """
+    Return the time [s] from the state to the first contact with the boundary; inf for none.
+
+    A motion whose speed changes its sign is searched in two parts, before and after that moment.
+    """
     speed, acceleration = state[SPEED], control[0]
     rest = -speed / acceleration if acceleration != 0.0 else math.inf
     if not 0.0 < rest < duration:
@@ -156,7 +167,11 @@ def _contact(system, space, state, control, duration):
 
 @kernel
 def _one_way(space, state, control, duration):
-    """Return the time of contact while the speed keeps its sign, from the arc length to it."""
+    """
+    Return the time [s] of the first contact of a motion whose speed keeps its sign; inf for none.
+
+    The time is computed from the arc length at which the arc leaves the space.
+    """
     arc_length = duration * (state[SPEED] + duration * control[0] / 2.0)
     heading = state[HEADING] if arc_length >= 0.0 else state[HEADING] + math.pi
     curvature = math.copysign(control[1], control[1] * arc_length)
@@ -174,11 +189,12 @@ def _one_way(space, state, control, duration):
 @kernel
 def _steer(system, state, position, velocity, weight, duration, control):
     """
-    Steer along the arc through the desired position, at the desired speed.
+    Write the control (2,) that drives on the arc to the desired position at the desired speed.
 
-    The arc through a point ``d`` away at an angle ``b`` has curvature 2 sin(b) / d. The base
-    goes backwards where the position lies behind, and not so fast that it would pass the position
-    within the duration.
+    The arc to a point at distance ``d`` and at angle ``b`` to the heading has curvature
+    2 sin(b) / d. The base goes backwards where the position lies behind the base. The desired
+    speed is lowered to the straight distance over the duration and to ``max_speed``; then
+    curvature and acceleration are clipped to the limits. ``weight`` is not used.
     """
     dx, dy = position[0] - state[X], position[1] - state[Y]
     ahead = dx * math.cos(state[HEADING]) + dy * math.sin(state[HEADING])
@@ -195,7 +211,7 @@ def _steer(system, state, position, velocity, weight, duration, control):
 @brake.register(CarData)
 @kernel
 def _brake(system, state, control):
-    """Write the control (2,) that brakes along the heading; return the time to rest [s]."""
+    """Write the control (2,) of straight braking at full strength; return the time to rest [s]."""
     control[0] = -math.copysign(system.max_acceleration, state[SPEED])
     control[1] = 0.0
     return abs(state[SPEED]) / system.max_acceleration
@@ -204,13 +220,13 @@ def _brake(system, state, control):
 @halt.register(CarData)
 @kernel
 def _halt(system, state):
-    """Set the speed of a state (4,) to 0."""
+    """Set the speed of a state (4,) to 0 in place; position and heading stay."""
     state[SPEED] = 0.0
 
 
 @velocity.register(CarData)
 @kernel
 def _velocity(system, state, out):
-    """Write the velocity (2,) of a state (4,): its speed along its heading."""
+    """Write to ``out`` (2,) the velocity of a state (4,): the speed along the heading."""
     out[0] = state[SPEED] * math.cos(state[HEADING])
     out[1] = state[SPEED] * math.sin(state[HEADING])

@@ -1,8 +1,9 @@
 """
 The double integrator: a point that accelerates (paper, Section 5, kinematic planning).
 
-Under a constant acceleration it moves along a parabola. Acceleration and speed are bounded, each
-by a ball: where the velocities at both ends of a step are within the limit, all between them are.
+Under a constant acceleration the point moves along a parabola. The vectors of acceleration and
+velocity each lie in a ball around 0. The velocity changes along a straight line within a step, so
+it keeps the limit on speed during the whole step if it does at both ends of the step.
 """
 
 from dataclasses import dataclass
@@ -30,7 +31,7 @@ _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(16)
 
 
 class DoubleIntegratorData(NamedTuple):
-    """A compiled double integrator: its limits, in the kernel frame of a space."""
+    """A compiled double integrator: its limits in the kernel frame of a space."""
 
     max_acceleration: float
     max_speed: float
@@ -41,7 +42,8 @@ class DoubleIntegrator(System):
     """
     A point with a velocity, controlled by its acceleration.
 
-    A state is position and velocity (2 dim,) [m, m/s], a control an acceleration (dim,) [m/s^2].
+    A state (2 dim,) is a position [m] followed by a velocity [m/s]; a control is an acceleration
+    (dim,) [m/s^2].
 
     Attributes
     ----------
@@ -65,22 +67,22 @@ class DoubleIntegrator(System):
 
     @property
     def state_dim(self) -> int:
-        """Dimension of states."""
+        """Length of a state: twice ``dim``, for position and velocity."""
         return 2 * self.dim
 
     @property
     def control_dim(self) -> int:
-        """Dimension of controls."""
+        """Length of a control: ``dim``, for an acceleration."""
         return self.dim
 
     @property
     def largest_acceleration(self) -> float:
-        """Largest change of the velocity (dim,) in a second [m/s^2]."""
+        """Largest rate of change [m/s^2] of the velocity (dim,): ``max_acceleration``."""
         return self.max_acceleration
 
     @property
     def data(self) -> DoubleIntegratorData:
-        """The compiled system in the caller's units."""
+        """The limits as ``DoubleIntegratorData``, in the caller's units."""
         return DoubleIntegratorData(self.max_acceleration, self.max_speed)
 
     def velocity(self, state: Floats) -> Floats:
@@ -93,39 +95,43 @@ class DoubleIntegrator(System):
         return math.hypot(*self.velocity(state))
 
     def lengths(self, states: Floats, controls: Floats, durations: Floats) -> Floats:
-        """Return (k,) lengths [m] of motions of states (k, 2 dim), by Gauss quadrature."""
+        """
+        Return how long (k,) [m] the parabolas from states (k, 2 dim) are, by Gauss quadrature.
+
+        Controls (k, dim) are constant for durations (k,) [s].
+        """
         lengths: Floats = _lengths(states, controls, durations)
         return lengths
 
     def compiled(self, space: Space) -> DoubleIntegratorData:
-        """Return the compiled system in the kernel frame of a space."""
+        """Return the limits as ``DoubleIntegratorData`` in the kernel frame of a space."""
         limits = self.max_acceleration / space.scale, self.max_speed / space.scale
         return DoubleIntegratorData(*limits)
 
     def to_kernel(self, space: Space, states: Floats) -> Floats:
-        """Convert states (..., 2 dim) to the kernel frame of a space."""
+        """Convert states (..., 2 dim) from the caller's frame to the kernel frame of a space."""
         positions, velocities = np.split(states, 2, axis=-1)
         inside = space.to_kernel(positions), vectors_to_kernel(space, velocities)
         return np.concatenate(inside, axis=-1)
 
     def from_kernel(self, space: Space, states: Floats) -> Floats:
-        """Convert states (..., 2 dim) from the kernel frame of a space."""
+        """Convert states (..., 2 dim) from the kernel frame of a space to the caller's frame."""
         positions, velocities = np.split(states, 2, axis=-1)
         outside = space.from_kernel(positions), vectors_from_kernel(space, velocities)
         return np.concatenate(outside, axis=-1)
 
     def controls_to_kernel(self, space: Space, controls: Floats) -> Floats:
-        """Convert accelerations (k, dim) to the kernel frame of a space."""
+        """Convert accelerations (k, dim) from the caller's frame to a space's kernel frame."""
         return vectors_to_kernel(space, controls)
 
     def controls_from_kernel(self, space: Space, controls: Floats) -> Floats:
-        """Convert accelerations (k, dim) from the kernel frame of a space."""
+        """Convert accelerations (k, dim) from a space's kernel frame to the caller's frame."""
         return vectors_from_kernel(space, controls)
 
 
 @kernel
 def _lengths(states, controls, durations):
-    """Return the integrals (k,) of the speed over the durations (k,) [s] of steps."""
+    """Return the lengths (k,) of steps: integrals of the speed over the durations (k,) [s]."""
     dim, lengths = controls.shape[1], np.empty(len(durations))
     for k in range(len(durations)):
         total = 0.0
@@ -141,7 +147,7 @@ def _lengths(states, controls, durations):
 @move.register(DoubleIntegratorData)
 @kernel
 def _move(system, state, control, duration, end):
-    """Write the state (2 dim,) after a duration [s] along a parabola."""
+    """Write to ``end`` (2 dim,) the state after a duration [s] of motion along a parabola."""
     dim = len(control)
     for i in range(dim):
         change = control[i] * duration
@@ -152,7 +158,7 @@ def _move(system, state, control, duration, end):
 @contact.register(DoubleIntegratorData)
 @kernel
 def _contact(system, space, state, control, duration):
-    """Return the time at which the parabola leaves the space; inf for none."""
+    """Return the time [s] at which the parabola leaves the space within ``duration``, or inf."""
     dim = len(control)
     return first_exit_on_curve(space, Parabola(state[:dim], state[dim:], control), duration)
 
@@ -161,10 +167,11 @@ def _contact(system, space, state, control, duration):
 @kernel
 def _steer(system, state, position, velocity, weight, duration, control):
     """
-    Minimize |x' - x_d|^2 + weight^2 |v' - v_d|^2 after the duration.
+    Write the acceleration (dim,) that minimizes |x' - x_d|^2 + weight^2 |v' - v_d|^2.
 
-    The cost is isotropic in the acceleration, so the best one within the limits is the point of
-    both balls that is nearest to the best one without limits.
+    x' and v' are position and velocity after the duration [s]; x_d and v_d are those desired.
+    The minimized sum depends only on the distance of the acceleration from its unlimited optimum.
+    So the best acceleration within the limits is the one nearest to that optimum.
     """
     dim = len(control)
     half = duration * duration / 2.0
@@ -178,7 +185,12 @@ def _steer(system, state, position, velocity, weight, duration, control):
 
 @kernel
 def limit_acceleration(system, velocity, duration, control):
-    """Project an acceleration (dim,) onto those that keep both limits for a duration."""
+    """
+    Replace an acceleration (dim,) in place by the nearest one that keeps both limits.
+
+    The limits are on the acceleration and on the speed after ``duration`` [s], from ``velocity``
+    (dim,).
+    """
     dim, radius = len(control), system.max_speed / duration
     if norm(control) <= system.max_acceleration:
         within, beyond = True, _speed_after(velocity, duration, control) > system.max_speed
@@ -203,7 +215,7 @@ def limit_acceleration(system, velocity, duration, control):
 
 @kernel
 def _nearest_on_both_spheres(limit, radius, offset, wanted, control):
-    """Write the point nearest to ``wanted`` where |a| = limit meets |a + offset| = radius."""
+    """Write the point ``a`` nearest to ``wanted`` with |a| = limit and |a + offset| = radius."""
     gap = norm(offset)
     along = (radius * radius - limit * limit - gap * gap) / (2.0 * gap * gap)
     height = math.sqrt(max(limit * limit - (along * gap) ** 2, 0.0))
@@ -221,7 +233,7 @@ def _nearest_on_both_spheres(limit, radius, offset, wanted, control):
 
 @kernel
 def _scale_to(vector, length):
-    """Scale a vector (dim,) down to ``length`` where it is longer."""
+    """Scale a vector (dim,) in place to ``length`` if it is longer than that."""
     before = norm(vector)
     if before > length:
         for i in range(len(vector)):
@@ -230,7 +242,7 @@ def _scale_to(vector, length):
 
 @kernel
 def _speed_after(velocity, duration, control):
-    """Return the speed after a duration under an acceleration (dim,)."""
+    """Return the speed a duration [s] after ``velocity`` (dim,) under an acceleration (dim,)."""
     squared = 0.0
     for i in range(len(velocity)):
         squared += (velocity[i] + duration * control[i]) ** 2
@@ -240,7 +252,7 @@ def _speed_after(velocity, duration, control):
 @brake.register(DoubleIntegratorData)
 @kernel
 def _brake(system, state, control):
-    """Write the acceleration (dim,) against the velocity; return the time to rest [s]."""
+    """Write the full acceleration (dim,) against the velocity; return the time to rest [s]."""
     dim = len(control)
     speed = norm(state[dim:])
     for i in range(dim):
@@ -251,7 +263,7 @@ def _brake(system, state, control):
 @halt.register(DoubleIntegratorData)
 @kernel
 def _halt(system, state):
-    """Set the velocity of a state (2 dim,) to 0."""
+    """Set the velocity of a state (2 dim,) to 0 in place; the position stays."""
     half = len(state) // 2
     for i in range(half, len(state)):
         state[i] = 0.0
@@ -260,6 +272,6 @@ def _halt(system, state):
 @velocity.register(DoubleIntegratorData)
 @kernel
 def _velocity(system, state, out):
-    """Write the velocity (dim,) of a state (2 dim,)."""
+    """Write to ``out`` (dim,) the velocity of a state (2 dim,)."""
     for i in range(len(out)):
         out[i] = state[len(out) + i]

@@ -1,9 +1,10 @@
 """
 The primitives of systems: the functions of a compiled system that planners call.
 
-A compiled system is a NamedTuple of its limits, in the kernel frame of a space, and registers its
-own kernel for each primitive. A state is an array (state_dim,) that begins with the position
-(dim,); a control is an array (control_dim,) that is constant for a duration [s].
+A compiled system is a NamedTuple of limits in the kernel frame of a space. The type of the
+NamedTuple selects the kernel that runs: every system registers one kernel for each primitive. A
+state is an array (state_dim,) that begins with the position (dim,); a control is an array
+(control_dim,) that is constant for a duration [s].
 """
 
 from typing import Any
@@ -17,14 +18,14 @@ import numpy as np
 @dispatched
 @kernel
 def move(system: Any, state: Any, control: Any, duration: float, end: Any) -> None:
-    """Write to ``end`` the state after ``duration`` under a constant control."""
+    """Write to ``end`` (state_dim,) the state after ``duration`` [s] under a constant control."""
     raise NotImplementedError
 
 
 @dispatched
 @kernel
 def contact(system: Any, space: Any, state: Any, control: Any, duration: float) -> float:
-    """Return the first time in [0, ``duration``] at which the motion is not free, or inf."""
+    """Return the first time [s] in [0, ``duration``] when the motion is not free; inf for none."""
     raise NotImplementedError
 
 
@@ -39,34 +40,44 @@ def steer(
     duration: float,
     control: Any,
 ) -> None:
-    """Write the control that leads nearest to a desired position and velocity in a duration."""
+    """
+    Write to ``control`` the control within the limits that drives towards a target.
+
+    The target is a desired position (dim,) and velocity (dim,) after ``duration`` [s]. ``weight``
+    [s] scales a difference in velocity so that it compares with one in position; a system may
+    ignore the weight.
+    """
     raise NotImplementedError
 
 
 @dispatched
 @kernel
 def brake(system: Any, state: Any, control: Any) -> float:
-    """Write the control that brakes along the heading to rest; return the time to rest [s]."""
+    """Write to ``control`` the control of straight, full braking; return the time to rest [s]."""
     raise NotImplementedError
 
 
 @dispatched
 @kernel
 def halt(system: Any, state: Any) -> None:
-    """Set the velocity of a state to 0."""
+    """Set the velocity of a state to 0 in place; the position stays."""
     raise NotImplementedError
 
 
 @dispatched
 @kernel
 def velocity(system: Any, state: Any, out: Any) -> None:
-    """Write the velocity of a state to a vector (dim,)."""
+    """Write to ``out`` (dim,) the velocity of a state (state_dim,)."""
     raise NotImplementedError
 
 
 @kernel
 def propagated(system, states, controls, durations):
-    """Return the states (k, state_dim) after durations (k,) under controls (k, control_dim)."""
+    """
+    Return the states (k, state_dim) that separate motions from ``states`` end in.
+
+    Motion ``k`` has the constant control ``controls[k]`` (control_dim,) for ``durations[k]`` [s].
+    """
     ends = np.empty_like(states)
     for k in range(len(durations)):
         move(system, states[k], controls[k], durations[k], ends[k])
@@ -75,7 +86,7 @@ def propagated(system, states, controls, durations):
 
 @kernel
 def first_blocked_step(system, space, states, controls, durations):
-    """Return the index of the first step of a motion that is not free; -1 when all are."""
+    """Return the index into ``durations`` of the first step that is not free; -1 if all are."""
     system, space = borrowed(system), borrowed(space)
     for k in range(len(durations)):
         if contact(system, space, states[k], controls[k], durations[k]) <= durations[k]:

@@ -18,22 +18,22 @@ class System(Protocol):
     """
     A robot with inertia, in the caller's units: metres, radians, seconds.
 
-    A state is an array whose first ``dim`` numbers are the position. A control is constant for
-    some duration, for which the motion has a closed form. Classes that inherit from this one get
-    ``check_state`` and ``propagate`` from the rest.
+    A state is an array whose first ``dim`` numbers are the position. A control is constant for a
+    duration, and the motion under a constant control has a closed form. A class that inherits
+    from this one and defines the other members gets ``check_state`` and ``propagate``.
     """
 
     @property
     def dim(self) -> int:
-        """Dimension of positions."""
+        """Length of a position."""
 
     @property
     def state_dim(self) -> int:
-        """Dimension of states."""
+        """Length of a state."""
 
     @property
     def control_dim(self) -> int:
-        """Dimension of controls."""
+        """Length of a control."""
 
     @property
     def max_speed(self) -> float:
@@ -41,14 +41,18 @@ class System(Protocol):
 
     @property
     def largest_acceleration(self) -> float:
-        """Largest change of the velocity (dim,) in a second [m/s^2]."""
+        """Largest rate of change [m/s^2] of the velocity (dim,), in any direction."""
 
     @property
     def data(self) -> Any:
-        """The compiled system in the caller's units."""
+        """The compiled system, a NamedTuple of limits, in the caller's units."""
 
     def check_state(self, name: str, state: ArrayLike) -> Floats:
-        """Return a state (state_dim,) within the speed limit, or raise RequestError."""
+        """
+        Return a state as an array (state_dim,), or raise RequestError that begins with ``name``.
+
+        The speed may exceed ``max_speed`` by rounding only.
+        """
         checked = check_point(name, state, self.state_dim)
         speed = self.speed(checked)
         if speed > self.max_speed * (1.0 + ROUNDING):
@@ -71,25 +75,29 @@ class System(Protocol):
         """Return the velocity [m/s] of a state (state_dim,) as a vector (dim,)."""
 
     def speed(self, state: Floats) -> float:
-        """Return the speed [m/s] of a state (state_dim,)."""
+        """Return the speed [m/s] of a state (state_dim,), at least 0."""
 
     def lengths(self, states: Floats, controls: Floats, durations: Floats) -> Floats:
-        """Return (k,) lengths [m] of motions of states (k, state_dim) in durations (k,) [s]."""
+        """
+        Return how long (k,) [m] the curves of motions from states (k, state_dim) are.
+
+        Controls (k, control_dim) are constant for durations (k,) [s].
+        """
 
     def compiled(self, space: Space) -> Any:
-        """Return the compiled system in the kernel frame of a space."""
+        """Return the compiled system, a NamedTuple of limits, in the kernel frame of a space."""
 
     def to_kernel(self, space: Space, states: Floats) -> Floats:
-        """Convert states (..., state_dim) to the kernel frame of a space."""
+        """Convert states (..., state_dim) from the caller's frame to a space's kernel frame."""
 
     def from_kernel(self, space: Space, states: Floats) -> Floats:
-        """Convert states (..., state_dim) from the kernel frame of a space."""
+        """Convert states (..., state_dim) from a space's kernel frame to the caller's frame."""
 
     def controls_to_kernel(self, space: Space, controls: Floats) -> Floats:
-        """Convert controls (k, control_dim) to the kernel frame of a space."""
+        """Convert controls (k, control_dim) from the caller's frame to a space's kernel frame."""
 
     def controls_from_kernel(self, space: Space, controls: Floats) -> Floats:
-        """Convert controls (k, control_dim) from the kernel frame of a space."""
+        """Convert controls (k, control_dim) from a space's kernel frame to the caller's frame."""
 
 
 def check_limit(name: str, value: Any) -> float:
@@ -101,15 +109,15 @@ def check_limit(name: str, value: Any) -> float:
 
 
 def vectors_to_kernel(space: Space, vectors: Floats) -> Floats:
-    """Rotate and scale vectors (..., dim) to the kernel frame of a space."""
+    """Rotate and scale vectors (..., dim) from the caller's frame to a space's kernel frame."""
     return vectors @ _axes(space) / space.scale
 
 
 def vectors_from_kernel(space: Space, vectors: Floats) -> Floats:
-    """Rotate and scale vectors (..., dim) from the kernel frame of a space."""
+    """Rotate and scale vectors (..., dim) from a space's kernel frame to the caller's frame."""
     return vectors @ _axes(space).T * space.scale
 
 
 def _axes(space: Space) -> Floats:
-    """Return the axes (dim, dim) of the caller's frame, one in each row, in the kernel frame."""
+    """Return the caller's axes as unit vectors (dim, dim) of the kernel frame, one in each row."""
     return space.turn_to_kernel(np.eye(space.dim))

@@ -1,4 +1,4 @@
-"""A trajectory: the states of a system over time, and the controls between them."""
+"""A trajectory: the states of a system over time, and the controls between the states."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -15,19 +15,19 @@ from numpy.typing import ArrayLike
 @dataclass(frozen=True, eq=False)
 class Trajectory:
     """
-    States at increasing times, and the control that leads from each to the next.
+    States at times that never decrease, and the control that leads from each state to the next.
 
     Attributes
     ----------
     system : System
         The robot.
     times : (m,)
-        From 0 on [s], never decreasing.
+        Times of the states [s], never decreasing; the first is 0.
     states : (m, state_dim)
-        Caller's units. Each follows from the one before under the control between them; where the
-        boundary stops a motion inelastically the state that follows is at rest instead.
+        Caller's units. Each state follows from the state before under the control between the two.
+        The exception: where an inelastic boundary stops the robot, the next state is at rest.
     controls : (m - 1, control_dim)
-        Each is constant from one time to the next.
+        Row ``k`` is constant from ``times[k]`` to ``times[k + 1]``.
 
     """
 
@@ -54,12 +54,12 @@ class Trajectory:
 
     @property
     def length(self) -> float:
-        """Length of the curve [m]."""
+        """Length of the curve of positions [m]."""
         steps = self.states[:-1], self.controls, np.diff(self.times)
         return float(self.system.lengths(*steps).sum())
 
     def at(self, times: ArrayLike) -> Floats:
-        """Return the states (k, state_dim) at times (k,) [s], clamped to [0, duration]."""
+        """Return the states (k, state_dim) at times (k,) [s] clamped to [0, ``duration``]."""
         wanted = np.clip(np.atleast_1d(np.asarray(times, dtype=np.float64)), 0.0, self.duration)
         steps = np.searchsorted(self.times, wanted, side='right') - 1
         states = self.states[steps]
@@ -74,18 +74,19 @@ class Trajectory:
 
 def join_trajectories(trajectories: Sequence[Trajectory]) -> Trajectory:
     """
-    Join trajectories of one system, in order, to one.
+    Return one trajectory that runs through trajectories of one system in order.
 
     Parameters
     ----------
     trajectories : sequence of Trajectory
-        At least one. Each begins in the state that the one before ends in; one that takes no time
-        adds nothing.
+        At least one. Each begins in the state that the trajectory before ends in. A trajectory of
+        0 s adds no steps; if all last 0 s, the first is returned as a copy.
 
     Raises
     ------
     RequestError
-        When there are none, or one does not begin where the one before ends.
+        When the sequence is empty, or a trajectory does not begin in the state that the one before
+        ends in.
 
     """
     if not trajectories:

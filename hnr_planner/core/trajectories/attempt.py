@@ -1,9 +1,10 @@
 """
 One search for a trajectory: the motion found is converted, checked and shortened.
 
-A search ends with a motion in the kernel frame. It is converted to a trajectory in the caller's
-frame, checked there step by step, and shortened. All of that observes the budget, like the search:
-a chain of Hit-and-Run may have hundreds of thousands of steps.
+A search ends with a motion in the kernel frame. The motion is converted to a trajectory in the
+caller's frame, every step of the trajectory is checked, and the motion is shortened if the request
+asks for that. Each of these stages stops when the budget ends, as the search does: a chain of
+Hit-and-Run may have hundreds of thousands of steps.
 """
 
 from collections.abc import Iterator
@@ -41,11 +42,12 @@ class Found(NamedTuple):
     Attributes
     ----------
     motion : Motion
-        Kernel frame.
+        The motion from which shortening starts, in the kernel frame.
     trajectory : Trajectory or None
-        Caller's frame, free; None where the motion has too many steps to be driven.
+        The motion in the caller's frame, free; None where the motion has more than ``STEPS_MAX``
+        steps and the request does not accept any length.
     first : FirstSolution
-        The trajectory as found.
+        Time, length and positions of the trajectory as found, before any shortening.
 
     """
 
@@ -57,7 +59,12 @@ class Found(NamedTuple):
 def search_trajectory(
     request: KinodynamicRequest, budget: Budget, began: float
 ) -> tuple[PlannerStatus, KinodynamicSearch, Found | None]:
-    """Search for a motion that is free in the caller's coordinates."""
+    """
+    Search until a motion is free in the caller's frame too, or a limit ends the search.
+
+    Returns (status, the last search, what it found or None). ``began`` is the time at which the
+    request began, on the clock of ``working_time`` [s].
+    """
 
     def start(salt: int) -> KinodynamicSearch:
         return request.planner.start(request.problem, request.geometric.stream(0, SEARCH, salt))
@@ -72,7 +79,11 @@ def evaluate(
     request: KinodynamicRequest, search: KinodynamicSearch, budget: Budget, began: float
 ) -> Found | None:
     """
-    Return the trajectory of a solved search, reduced if it is too long; None if it is not free.
+    Return what a solved search found; None if the trajectory meets the boundary.
+
+    A motion of more than ``STEPS_MAX`` steps is reduced where the request shortens. If it is
+    still too long, and the request does not accept any length, the trajectory is None and is not
+    checked.
 
     Raises
     ------
@@ -102,7 +113,12 @@ def shortened(
     budget: Budget,
     began: float,
 ) -> Trajectory:
-    """Return a shorter trajectory, as far as the limits allow, or the same if that is not free."""
+    """
+    Return a trajectory of no longer duration, shortened until proposals or budget end.
+
+    If the result meets the boundary in the caller's frame, or the budget ends before that check,
+    ``trajectory`` itself is returned.
+    """
     rng = request.geometric.stream(0, SHORTEN)
     motion = _shorten_within(request, motion, rng, PROPOSALS, budget)
     if effort.optimizes:
@@ -118,7 +134,7 @@ def shortened(
 def _shorten_within(
     request: KinodynamicRequest, motion: Motion, rng: Stream, proposals: float, budget: Budget
 ) -> Motion:
-    """Return a motion after ``proposals`` shortening proposals, fewer where the budget ends."""
+    """Return the motion after ``proposals`` attempts to shorten it, fewer if the budget ends."""
     brakes = request.planner.boundary == 'forbidden'
     while proposals > 0 and budget.stop() is None:
         batch = int(min(proposals, PROPOSALS_IN_A_BATCH))
@@ -130,9 +146,10 @@ def _shorten_within(
 
 def to_trajectory(request: KinodynamicRequest, motion: Motion, budget: Budget) -> Trajectory:
     """
-    Return the trajectory of a motion found in the kernel frame.
+    Return the trajectory in the caller's frame of a motion in the kernel frame.
 
-    Its start, and a goal that it meets exactly, have exactly the caller's coordinates.
+    The first state is exactly the caller's start. If the motion ends exactly at the goal, the last
+    position is exactly the caller's goal. Raises Interrupted when the budget ends.
     """
     system, space = request.system, request.geometric.space
     states, controls = np.empty_like(motion.states), np.empty_like(motion.controls)
@@ -146,7 +163,7 @@ def to_trajectory(request: KinodynamicRequest, motion: Motion, budget: Budget) -
 
 
 def is_free(request: KinodynamicRequest, trajectory: Trajectory, budget: Budget) -> bool:
-    """Return whether no step of a trajectory meets the boundary."""
+    """Return whether no step of a trajectory meets the boundary; raise Interrupted at a limit."""
     system, space, durations = request.system, request.geometric.space, np.diff(trajectory.times)
     for rows in _chunks(len(durations), budget):
         step = first_blocked_step(
@@ -162,7 +179,7 @@ def is_free(request: KinodynamicRequest, trajectory: Trajectory, budget: Budget)
 
 
 def _length(trajectory: Trajectory, budget: Budget) -> float:
-    """Return the length of a trajectory."""
+    """Return the length [m] of a trajectory; raise Interrupted at a limit of the budget."""
     durations, total = np.diff(trajectory.times), 0.0
     for rows in _chunks(len(durations), budget):
         steps = trajectory.states[rows], trajectory.controls[rows], durations[rows]
@@ -171,7 +188,11 @@ def _length(trajectory: Trajectory, budget: Budget) -> float:
 
 
 def _chunks(n_rows: int, budget: Budget) -> Iterator[slice]:
-    """Yield slices of rows; before each but the first, raise Interrupted at a limit."""
+    """
+    Yield slices of at most ``CHUNK`` rows that cover ``n_rows`` rows.
+
+    Before every slice except the first, raise Interrupted if the budget has ended.
+    """
     for first in range(0, n_rows, CHUNK):
         if first > 0 and budget.stop() is not None:
             raise Interrupted('the work was interrupted before it was done')

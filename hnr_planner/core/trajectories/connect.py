@@ -1,9 +1,10 @@
 """
 Planner for the double integrator: come to rest, find a path, drive it from stop to stop.
 
-A double integrator at rest can follow every free polyline, stopping at its vertices. So, once it
-is at rest, a motion is found as a path is, by trees of Hit-and-Run steps from both ends
-(``hit_and_run_connect``). ``shorten`` then makes the motion fast.
+A double integrator at rest can follow every free polyline if it stops at each vertex. So the
+planner first brings the robot to rest, then finds a path for a point without inertia, by trees of
+Hit-and-Run steps from both ends (``hit_and_run_connect``), and drives that path. ``shorten`` then
+makes the motion fast.
 """
 
 from dataclasses import dataclass, field
@@ -36,27 +37,28 @@ from numpy.typing import NDArray
 
 @dataclass(frozen=True)
 class KinodynamicConnect:
-    """Drive the path that trees of Hit-and-Run steps find. It has no settings."""
+    """A planner that drives the path found by trees of Hit-and-Run steps; it has no settings."""
 
     name: ClassVar[str] = 'kinodynamic_connect'
     boundary: ClassVar[Boundary] = 'forbidden'
     samples_goal: ClassVar[bool] = False
 
     def start(self, problem: KinodynamicProblem, rng: Stream) -> 'KinodynamicConnectSearch':
-        """Start at the problem's start."""
+        """Return a search that begins at the start of ``problem``, with a random stream."""
         return KinodynamicConnectSearch(problem, rng)
 
 
 @dataclass
 class KinodynamicConnectSearch:
-    """A running search: first for a state at rest, then for a path from there."""
+    """A running search: first for a state at rest, then for a path from that state to the goal."""
 
     problem: KinodynamicProblem
     rng: Stream
     _n_rows: int = field(init=False, default=1)
     _steps: Steps = field(init=False)
     _n_braking: int = field(init=False, default=0)
-    #: Row of the table that is at rest, the problem from there to the goal, and its search.
+    #: Row of the table whose state is at rest (NONE before there is one), the problem of a path
+    #: from that state to the goal, and the search for such a path.
     _rest_row: int = field(init=False, default=NONE)
     _from_rest: Problem = field(init=False)
     _path_search: PathSearch | None = field(init=False, default=None)
@@ -67,18 +69,18 @@ class KinodynamicConnectSearch:
 
     @property
     def iterations(self) -> int:
-        """Steps of the tree that comes to rest, and of those that find the path."""
+        """Number of transitions: of the tree that comes to rest plus those of the path search."""
         path_steps = 0 if self._path_search is None else self._path_search.iterations
         return self._n_braking + path_steps
 
     @property
     def solved(self) -> bool:
-        """Whether the path is found."""
+        """Whether a path from the state at rest to the goal is found."""
         return self._is_direct or (self._path_search is not None and self._path_search.solved)
 
     @property
     def samples(self) -> Floats:
-        """Positions of the tree that comes to rest, then vertices of the trees from there."""
+        """Positions (k, dim) of the tree that comes to rest, then samples of the path search."""
         before = self._steps.states[: self._n_rows, : len(self.problem.geometric.goal)]
         if self._path_search is None:
             return before
@@ -86,7 +88,7 @@ class KinodynamicConnectSearch:
 
     @property
     def parents(self) -> NDArray[np.int64]:
-        """Index (k,) of the sample that each was reached from; -1 for the roots."""
+        """Index (k,) into ``samples`` of the parent of each sample; -1 for the roots of trees."""
         before = self._steps.parents[: self._n_rows]
         if self._path_search is None:
             return before
@@ -95,7 +97,7 @@ class KinodynamicConnectSearch:
 
     @property
     def counts(self) -> dict[str, int]:
-        """Number of steps of the tree that comes to rest."""
+        """Number of transitions of the tree that comes to rest, as ``braking_steps``."""
         return {'braking_steps': self._n_braking}
 
     @property
@@ -104,7 +106,7 @@ class KinodynamicConnectSearch:
         return self._driven(self._stops)
 
     def draft(self, motion: Motion) -> Motion:
-        """Return the motion to rest, then along the path shortened by visibility."""
+        """Return the motion to rest, then along the path shortened by free straight segments."""
         return self._driven(shorten_stops(self._from_rest, self._stops))
 
     @property
@@ -128,7 +130,7 @@ class KinodynamicConnectSearch:
         )
 
     def advance(self, n_iterations: int) -> None:
-        """Take at most ``n_iterations`` further steps."""
+        """Take at most ``n_iterations`` further steps; none once the search is solved."""
         if self.solved:
             return
         if self._rest_row == NONE:
@@ -154,5 +156,5 @@ class KinodynamicConnectSearch:
 
 @kernel
 def is_direct(geometric):
-    """Return whether the start reaches the goal directly."""
+    """Return whether the start lies in the goal region, or sees a goal without a radius."""
     return reaches_goal(geometric, geometric.start)

@@ -1,8 +1,9 @@
 """
 The controller of the paper's two kinodynamic planners, with their settings and searches.
 
-A transition drives towards a desired position and velocity (paper, Section 5): the controller
-takes one step of constant control after another, each as near to the target as the limits allow.
+A transition drives towards a target, a desired position and velocity (paper, Section 5): the
+controller takes one step of constant control after another, each as near to the target as the
+limits of the system allow.
 """
 
 from dataclasses import dataclass, field
@@ -27,7 +28,7 @@ from hnr_planner.core.trajectories.steps import first_step, motion_to, Steps, ta
 import numpy as np
 from numpy.typing import NDArray
 
-#: End of a transition: when the target comes no nearer, or after one step.
+#: End of a transition: 'arrival', when the target comes no nearer; 'step', after one step.
 Transition: TypeAlias = Literal['arrival', 'step']
 TRANSITIONS: tuple[Transition, ...] = ('arrival', 'step')
 #: Largest number of steps in one transition.
@@ -36,18 +37,18 @@ STEPS_MAX = 256
 
 class Driving(NamedTuple):
     """
-    Settings of a driven planner, as they are passed to kernels.
+    Settings of a driven planner, as a NamedTuple for kernels.
 
     Attributes
     ----------
     inelastic : bool
         Whether the boundary stops the robot; otherwise a step that meets it is not taken.
     one_step : bool
-        Whether a transition is one step.
+        Whether a transition is one step; otherwise it goes on until the target comes no nearer.
     time_step : float
-        Duration of a step [s].
+        Duration of a step [s], unless the boundary cuts it short.
     velocity_weight : float
-        Weight of a difference in velocity beside one in position [s].
+        Factor [s] that makes a difference in velocity comparable with one in position.
 
     """
 
@@ -65,15 +66,16 @@ class DrivenPlanner:
     Attributes
     ----------
     boundary : 'forbidden' or 'inelastic'
-        Effect of the boundary: it must not be met, or it stops the robot there (the paper's).
+        Effect of the boundary. Forbidden: steps that meet it are not taken. Inelastic (the
+        paper's): the robot stops right before it and may go on from there.
     transition : 'arrival' or 'step'
         Unit of the count of transitions, which the paper leaves open: driving until the target
         comes no nearer or the boundary is met, or one step.
     time_step : float
-        Duration of an integration step [s], at least 2e-9.
+        Duration of an integration step [s], finite, at least 2e-9.
     velocity_weight : float
-        Weight of a difference in velocity beside one in position [s], for the controller and for
-        the nearest vertex.
+        Factor [s] that makes a difference in velocity comparable with one in position, for the
+        controller and, in RRT, for the nearest vertex.
 
     """
 
@@ -98,7 +100,7 @@ class DrivenPlanner:
 
     @property
     def driving(self) -> Driving:
-        """The settings as kernels take them."""
+        """The settings as a ``Driving``, which kernels take."""
         return Driving(
             self.boundary == 'inelastic',
             self.transition == 'step',
@@ -109,7 +111,7 @@ class DrivenPlanner:
 
 @dataclass
 class DrivenSearch:
-    """A running search with a table of steps."""
+    """A running search that stores its steps in a table, which grows with every batch."""
 
     problem: KinodynamicProblem
     driving: Driving
@@ -131,21 +133,21 @@ class DrivenSearch:
 
     @property
     def parents(self) -> NDArray[np.int64]:
-        """Index (k,) of the sample that each step began at; -1 for the start."""
+        """Index (k,) into ``samples`` of the sample that each step began at; -1 for the start."""
         return self._steps.parents[: self._n_rows]
 
     @property
     def counts(self) -> dict[str, int]:
-        """Number of integration steps, including those that were not taken."""
+        """Number of integration steps tried, as ``integration_steps``: also those not taken."""
         return {'integration_steps': self.n_steps}
 
     @property
     def motion(self) -> Motion:
-        """The motion from the start to the newest state."""
+        """The motion from the start to the newest state: the solution once ``solved`` is true."""
         return motion_to(self._steps, self._n_rows - 1)
 
     def draft(self, motion: Motion) -> Motion:
-        """Return ``motion``: there is no better one to shorten."""
+        """Return ``motion`` unchanged: this search knows no better motion to shorten."""
         return motion
 
     def _grow_arrays(self, n_iterations: int) -> None:
@@ -156,9 +158,12 @@ class DrivenSearch:
 @kernel
 def drive(problem, driving, steps, n_rows, parent, position, velocity_wanted):
     """
-    Drive from row ``parent`` towards a target: (rows, steps tried, whether the goal is reached).
+    Drive from row ``parent`` of the table ``steps`` towards a desired position and velocity.
 
-    The first step is always kept, a later one only if it comes nearer to the target.
+    Returns (number of rows, steps tried, whether the goal is reached). The first step is kept if
+    the boundary permits it; a later step is kept only if it comes nearer to the target, or if the
+    boundary stops it. Driving ends at the first step that is not kept, at the boundary, at the
+    goal, or after ``STEPS_MAX`` steps (one step with ``one_step``).
     """
     row, tried, nearest = parent, 0, np.inf
     while tried < STEPS_MAX:
@@ -193,7 +198,7 @@ def drive(problem, driving, steps, n_rows, parent, position, velocity_wanted):
 
 @kernel
 def _squared_distance(system, driving, state, position, velocity_wanted):
-    """Return the squared distance of a state to a target, in position and weighted velocity."""
+    """Return the squared distance of a state to a target, over position and weighted velocity."""
     dim = len(position)
     v, squared = np.empty(dim), 0.0
     velocity(system, state, v)

@@ -1,8 +1,9 @@
 """
 Hit-and-Run under a controller (paper, Section 5).
 
-The desired position is a uniform point of a random chord through the present position, the desired
-velocity uniform in the ball of velocities. The next transition begins where the controller ended.
+The desired position is a uniform point of a random chord through the present position. The desired
+velocity is uniform in the ball whose radius is the largest speed. The next transition begins in
+the state that the controller reached in the last one.
 """
 
 from dataclasses import dataclass
@@ -24,16 +25,16 @@ class KinodynamicHitAndRun(DrivenPlanner):
     name: ClassVar[str] = 'kinodynamic_hit_and_run'
 
     def start(self, problem: KinodynamicProblem, rng: Stream) -> 'KinodynamicHitAndRunSearch':
-        """Start a chain at the problem's start."""
+        """Return a search whose chain begins at the start of ``problem``, with a random stream."""
         return KinodynamicHitAndRunSearch(problem, self.driving, rng)
 
 
 @dataclass
 class KinodynamicHitAndRunSearch(DrivenSearch):
-    """A running search by one chain."""
+    """A running search by one chain: every transition begins in the newest state."""
 
     def advance(self, n_iterations: int) -> None:
-        """Handle at most ``n_iterations`` further proposals."""
+        """Make at most ``n_iterations`` further transitions; none once the search is solved."""
         if self.solved:
             return
         self._grow_arrays(n_iterations)
@@ -46,7 +47,11 @@ class KinodynamicHitAndRunSearch(DrivenSearch):
 
 @kernel
 def _walk(problem, driving, rng, steps, n_rows, n_iterations):
-    """Extend the chain: (rows, transitions, steps tried, whether the goal is reached)."""
+    """
+    Extend the chain by at most ``n_iterations`` transitions, in place in the table ``steps``.
+
+    Returns (number of rows, transitions made, steps tried, whether the goal is reached).
+    """
     problem, rng, steps = borrowed(problem), borrowed(rng), borrowed(steps)
     geometric, n_steps = problem.geometric, 0
     dim = len(geometric.goal)

@@ -1,12 +1,12 @@
 """
 Proof that a collision is inevitable, from the stopping distance.
 
-Whatever the control, the position at time ``t`` lies in the disc of radius ``a t^2 / 2`` around
-``x + v t``, where ``a`` is the largest acceleration. On a grid the set of free cells that the
-robot may be in is computed from one slice of time to the next: the cells that touch the disc of
-the slice and are connected, through such cells, to the set before. Once it is empty, a collision
-has happened. In every space the bounds are walls: no robot stops before a wall that is nearer than
-the stopping distance ``v^2 / (2 a)``.
+For a robot at ``x`` with velocity ``v``, whatever the control, the position at time ``t`` lies in
+the disc of radius ``a t^2 / 2`` around ``x + v t``, where ``a`` is the largest acceleration. On a
+grid the set of free cells that the robot may be in is computed from one slice of time to the next:
+the cells that touch the disc of the slice and are connected, through such cells, to the set of the
+slice before. Once the set is empty, a collision has happened. In every space the bounds count as
+walls: no robot stops before a wall that is nearer than the stopping distance ``v^2 / (2 a)``.
 """
 
 import math
@@ -32,9 +32,9 @@ def is_collision_inevitable(
     space : NamedTuple
         The compiled space.
     bounds : (dim,), (dim,)
-        Corners of a box around it.
+        Lower and upper corner of a box that contains the space.
     x, v : (dim,)
-        Position and velocity.
+        Position and velocity at the start.
     acceleration : float
         Largest acceleration in any direction. All in the kernel frame.
 
@@ -48,7 +48,12 @@ def is_collision_inevitable(
 
 @kernel
 def _is_trapped(free_distance, x, v, acceleration):
-    """Return whether the set of cells that the robot may be in becomes empty."""
+    """
+    Return whether the set of cells of a grid that the robot may be in becomes empty.
+
+    The grid is given by ``free_distance`` (rows, columns), above 0 in free cells. Position,
+    velocity and acceleration are in the kernel frame, whose unit is a cell.
+    """
     rows, columns = free_distance.shape
     speed = math.hypot(v[0], v[1])
     duration = 2.0 * speed / acceleration / SLICES
@@ -77,7 +82,13 @@ def _is_trapped(free_distance, x, v, acceleration):
 
 @kernel
 def _spread(free_distance, x, y, radius, cells, n, reached, stack):
-    """Write the free cells that touch a disc, connected to one of ``n`` cells; return how many."""
+    """
+    Replace the first ``n`` of ``cells`` by the free cells that the robot may be in next.
+
+    Those touch the disc around (``x``, ``y``) and are connected, through cells that touch it, to
+    one of the ``n`` cells that touches it too. Returns their number. ``reached`` is all false
+    before and after; ``stack`` is work space.
+    """
     waiting, found = 0, 0
     for k in range(n):
         if _touches(cells[k, 0], cells[k, 1], x, y, radius):
@@ -101,7 +112,7 @@ def _spread(free_distance, x, y, radius, cells, n, reached, stack):
 
 @kernel
 def _touches(row, column, x, y, radius):
-    """Return whether a disc touches a cell."""
+    """Return whether a disc around (``x``, ``y``) touches a cell of the grid; units are cells."""
     dx = max(column - x, max(x - column - 1.0, 0.0))
     dy = max(row - y, max(y - row - 1.0, 0.0))
     return dx * dx + dy * dy <= radius * radius

@@ -1,8 +1,8 @@
 """
 ``plan_trajectory``: find a trajectory for one request.
 
-The planners search and count. ``plan_trajectory`` validates the request, enforces its limits and
-builds the result.
+A planner searches and counts its transitions. ``plan_trajectory`` validates the request, enforces
+its limits of time, iterations and cancellation, and builds the result.
 """
 
 import math
@@ -52,16 +52,17 @@ def plan_trajectory(
     **settings: Any,
 ) -> TrajectoryResult:
     """
-    Find a free trajectory of a system.
+    Find a trajectory of a system that is free in a space and ends at a goal.
 
     Parameters
     ----------
     space : Space
-        Where the trajectory has to be free.
+        The free set that the trajectory has to stay in.
     system : System
         The robot, such as ``DoubleIntegrator(max_acceleration=1.0, max_speed=1.0)``.
     start : (state_dim,)
-        State of the system in the caller's frame: position, and how it moves.
+        State of the system in the caller's frame: position, then the velocity of a
+        ``DoubleIntegrator``, or heading and speed of a ``Car``.
     goal : (dim,)
         Position to reach, in the caller's frame [m].
     algorithm : str or planner
@@ -72,7 +73,8 @@ def plan_trajectory(
         Above 0 the trajectory ends within this distance [m] of the goal; at 0 exactly at the goal,
         which ``kinodynamic_connect`` alone can do.
     goal_speed : float
-        Largest speed at the end [m/s]; 0, at rest, ``kinodynamic_connect`` alone can do.
+        Largest speed at the end [m/s]; inf for any. ``kinodynamic_connect`` alone can end at rest
+        (0).
     boundary : 'forbidden' or 'inelastic'
         Effect of the boundary of the space. Forbidden: it is never met, and the end of the
         trajectory can be braked straight to rest before it; a start whose collision can be proved
@@ -81,9 +83,9 @@ def plan_trajectory(
     time_limit : float
         Seconds for the whole call, inf for no limit. Compilation does not count.
     max_iterations : int, optional
-        Transitions allowed for one search.
+        Transitions allowed for one search; None for no limit.
     seed : int, optional
-        Fresh when left out; the result names the one used.
+        Seed of the random streams. Left out: a new random seed; the result has the seed used.
     simplify : bool, optional
         Whether the trajectory is shortened in time. Left out: where that can be done, for a
         ``DoubleIntegrator``; and one of more than 10,000 steps that cannot be shortened is
@@ -147,7 +149,7 @@ def plan_trajectory(
 
 
 def _stay(request: KinodynamicRequest, status: PlannerStatus) -> Trajectory | None:
-    """Return the trajectory of one step of 0 s at the start where that is a solution."""
+    """Return a trajectory of one step of 0 s at the start if ``status`` is SOLVED, else None."""
     if status is not PlannerStatus.SOLVED:
         return None
     control = np.zeros((1, request.system.control_dim))
@@ -157,7 +159,7 @@ def _stay(request: KinodynamicRequest, status: PlannerStatus) -> Trajectory | No
 def _result_of_search(
     request: KinodynamicRequest, effort: Effort, budget: Budget, began: float
 ) -> TrajectoryResult:
-    """Search, and shorten what was found."""
+    """Search, shorten the trajectory found if the request says so, and return the result."""
     status, search, found = search_trajectory(request, budget, began)
     if found is None or found.trajectory is None:
         if found is not None:
@@ -177,7 +179,7 @@ def _result_of_search(
 def _failure(
     status: PlannerStatus, search: KinodynamicSearch, found: Found | None, seconds: float
 ) -> str:
-    """Return a description of how a search failed, or why what it found is refused."""
+    """Return a message: how a search failed, or that the motion found has too many steps."""
     spent = f'{search.iterations} transitions, {seconds:.3g} s'
     if found is None:
         return f'{status.value} ({spent})'
@@ -198,7 +200,11 @@ def _result(
     search: KinodynamicSearch | None = None,
     first: FirstSolution | None = None,
 ) -> TrajectoryResult:
-    """Build the result; without a search the start is its only sample, where it is a solution."""
+    """
+    Return the result of a request.
+
+    Without a search the samples are empty, or the start alone if staying there is the solution.
+    """
     space, dim = request.geometric.space, request.system.dim
     length = math.inf if trajectory is None else trajectory.length
     if search is not None:

@@ -1,9 +1,9 @@
 """
 Planning problems for systems, and the interface of their planners and searches.
 
-A planner is a frozen dataclass whose fields are its settings; its ``start`` gives a search, and
-``advance`` counts transitions, as for paths; but a search ends with a motion. All arrays are in
-the kernel frame of the space.
+A planner is a frozen dataclass whose fields are its settings. Its method ``start`` returns a
+search, whose ``advance`` counts transitions, as in a search for a path; but the search ends with a
+motion. All arrays are in the kernel frame of the space.
 """
 
 from typing import Any, Literal, NamedTuple, Protocol, TypeAlias
@@ -16,7 +16,8 @@ from hnr_planner.core.planning.planner import Problem, Search
 from hnr_planner.core.systems.primitives import velocity
 import numpy as np
 
-#: Effect of the boundary: it must not be met, or it stops the robot, which continues from there.
+#: Effect of the boundary: forbidden, no step may meet it; inelastic, it stops the robot, which
+#: continues from rest.
 Boundary: TypeAlias = Literal['forbidden', 'inelastic']
 BOUNDARIES: tuple[Boundary, ...] = ('forbidden', 'inelastic')
 #: Shortest step of a motion [s]; twice the shortest of a trajectory, whose times are rounded sums.
@@ -25,18 +26,18 @@ SHORTEST_STEP = 2e-9
 
 class KinodynamicProblem(NamedTuple):
     """
-    A planning problem for a system in the kernel frame of a space, as it is passed to kernels.
+    A planning problem for a system in the kernel frame of a space, as a NamedTuple for kernels.
 
     Attributes
     ----------
     geometric : Problem
-        The problem for a point without inertia.
+        The same start position, goal and space for a point without inertia.
     system : NamedTuple
         The compiled system.
     start : (state_dim,)
         The state at the start.
     goal_speed : float
-        Largest speed in the goal region; may be inf.
+        Largest speed at which a state in the goal region solves the problem; may be inf.
 
     """
 
@@ -47,7 +48,12 @@ class KinodynamicProblem(NamedTuple):
 
 
 class Motion(NamedTuple):
-    """Durations (m - 1,) [s] and controls (m - 1, control_dim) of steps; states (m, state_dim)."""
+    """
+    A motion in steps of constant control, in the kernel frame of a space.
+
+    Step ``k`` leads from ``states[k]`` to ``states[k + 1]``: durations (m - 1,) [s], states
+    (m, state_dim), controls (m - 1, control_dim).
+    """
 
     durations: Floats
     states: Floats
@@ -55,18 +61,18 @@ class Motion(NamedTuple):
 
 
 class KinodynamicSearch(Search, Protocol):
-    """A running search for a motion."""
+    """A running search for a motion of a system."""
 
     @property
     def motion(self) -> Motion:
-        """Motion of a solved search, as it was found."""
+        """Motion from start to goal as the search found it; valid only once ``solved`` is true."""
 
     def draft(self, motion: Motion) -> Motion:
-        """Return the motion from which shortening starts: ``motion``, or a better one."""
+        """Return the motion from which shortening starts: ``motion``, or a faster one."""
 
 
 class KinodynamicPlanner(Protocol):
-    """A planner for systems."""
+    """A planner for systems: settings, and a method that starts a search."""
 
     @property
     def name(self) -> str:
@@ -78,15 +84,15 @@ class KinodynamicPlanner(Protocol):
 
     @property
     def samples_goal(self) -> bool:
-        """Whether states are sampled, so that only a goal region can be reached, not a point."""
+        """Whether states are random, so that a goal needs a radius and a goal speed above 0."""
 
     def start(self, problem: KinodynamicProblem, rng: Stream) -> KinodynamicSearch:
-        """Start a search for a motion that solves ``problem``, with a random stream."""
+        """Return a new search for a motion that solves ``problem``, with a random stream."""
 
 
 @kernel
 def is_at_goal(problem, state):
-    """Return whether a state lies in the goal region and is slow enough for it."""
+    """Return whether a state lies in the goal region and is no faster than ``goal_speed``."""
     geometric, dim = problem.geometric, len(problem.geometric.goal)
     if distance(state[:dim], geometric.goal) > geometric.goal_radius:
         return False
@@ -95,7 +101,7 @@ def is_at_goal(problem, state):
 
 @kernel
 def speed_of(system, state, dim):
-    """Return the speed of a state (state_dim,)."""
+    """Return the speed of a state (state_dim,) whose position has ``dim`` coordinates."""
     v = np.empty(dim)
     velocity(system, state, v)
     return norm(v)

@@ -1,10 +1,10 @@
 """
-Reduction of a long motion of the double integrator to fewer steps, at little cost.
+Reduction of a long motion of the double integrator to fewer steps, in little computing time.
 
 A chain of Hit-and-Run may drive for hours before it meets the goal, in hundreds of thousands of
-steps. Here two random states are connected directly, and a connection that is free and faster
-replaces all steps between them. The time of a proposal does not depend on the length of the
-motion.
+steps. Here two random states of the motion are connected directly, and a connection that is free
+and faster replaces all steps between the two states. The time of a proposal does not depend on the
+length of the motion.
 """
 
 import math
@@ -29,7 +29,12 @@ PROPOSALS, PROPOSALS_IN_A_BATCH = 20_000, 100
 
 
 def reduce(problem: KinodynamicProblem, motion: Motion, rng: Stream, budget: Budget) -> Motion:
-    """Return a motion with the same ends, with few steps if the proposals and the budget allow."""
+    """
+    Return a motion with the same first and last state, and usually with far fewer steps.
+
+    Proposals stop at ``STEPS_ENOUGH`` steps, after ``PROPOSALS``, or when the budget ends; more
+    steps than wanted may be left then.
+    """
     durations, states, controls = (array.copy() for array in motion)
     n = len(durations)
     for _ in range(PROPOSALS // PROPOSALS_IN_A_BATCH):
@@ -43,7 +48,11 @@ def reduce(problem: KinodynamicProblem, motion: Motion, rng: Stream, budget: Bud
 
 @kernel
 def _reduce(problem, durations, states, controls, n, rng, proposals, enough):
-    """Apply proposals to the first ``n`` steps of a motion in place; return how many are left."""
+    """
+    Apply proposals to the first ``n`` steps of a motion in place; return the number of steps left.
+
+    Proposals end early once at most ``enough`` steps are left.
+    """
     problem, rng = borrowed(problem), borrowed(rng)
     system, dim = problem.system, controls.shape[1]
     work = empty_connection(dim)
@@ -68,7 +77,11 @@ def _reduce(problem, durations, states, controls, n, rng, proposals, enough):
 
 @kernel
 def _replace(system, durations, states, controls, n, i, j, connection):
-    """Replace steps ``i`` to ``j`` - 1 by a connection of fewer, in place; return the steps."""
+    """
+    Replace steps ``i`` to ``j`` - 1 in place by a connection of fewer steps.
+
+    Returns the number of steps of the whole motion after that.
+    """
     pieces, state_dim, dim = connection.n[0], states.shape[1], controls.shape[1]
     fewer = j - i - pieces
     for k in range(pieces):

@@ -1,7 +1,8 @@
 """
-The planners of ``plan_trajectory``, each listed once.
+The table of the planners of ``plan_trajectory``: name, class and description of each.
 
-Names and descriptions need no import of a planner: this module imports neither NumPy nor numba.
+This module imports no planner, and neither NumPy nor numba, so that names and descriptions are
+available at once.
 """
 
 from __future__ import annotations
@@ -42,7 +43,7 @@ KINODYNAMIC_ALGORITHMS = ('auto', *(entry.name for entry in KINODYNAMIC_ENTRIES)
 
 
 class _Classes(Mapping[str, type[Any]]):
-    """The classes of planners by name; each is imported when it is first accessed."""
+    """A mapping from names to classes of planners; looking up a name imports its class."""
 
     def __init__(self, entries: tuple[PlannerEntry, ...]) -> None:
         self._entries = {entry.name: entry for entry in entries}

@@ -1,4 +1,4 @@
-"""Validation of requests for a trajectory, and the outcome of those that need no search."""
+"""Validation of requests for a trajectory, and the outcome of requests that need no search."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -42,11 +42,11 @@ class KinodynamicRequest:
     Attributes
     ----------
     geometric : Request
-        The request for a point without inertia.
+        The same request for a point without inertia: space, start position, goal and seed.
     system : System
         The robot.
     start : (state_dim,)
-        The state at the start, caller's frame.
+        The state at the start, in the caller's frame.
     planner : KinodynamicPlanner
         The planner that searches.
     problem : KinodynamicProblem
@@ -81,7 +81,11 @@ def check_kinodynamic_request(
     simplify: bool | None,
     seed: int | None,
 ) -> KinodynamicRequest:
-    """Return the request that a caller's arguments make, or raise RequestError."""
+    """
+    Return the validated request of the arguments of ``plan_trajectory``.
+
+    Raises RequestError if an argument is malformed or does not go with another one.
+    """
     if not isinstance(getattr(system, 'state_dim', None), int):
         raise RequestError(f'system must be a system such as DoubleIntegrator(), got {system!r}')
     if system.dim != space.dim:
@@ -120,7 +124,10 @@ def make_kinodynamic_planner(
     algorithm: Any, settings: dict[str, Any], system: System, boundary: str = 'forbidden'
 ) -> KinodynamicPlanner:
     """
-    Return the planner that ``algorithm`` means for a system, built with ``settings`` for a name.
+    Return the planner that ``algorithm`` means for a system.
+
+    A name is built with ``settings`` and, except ``kinodynamic_connect``, with ``boundary``. A
+    planner value is returned as it is, with its own boundary.
 
     Raises
     ------
@@ -160,7 +167,11 @@ def make_kinodynamic_planner(
 
 
 def _check_simplify(simplify: bool | None, system: System) -> bool:
-    """Return whether a trajectory is shortened, or raise RequestError where it cannot be."""
+    """
+    Return whether a trajectory is shortened: ``simplify``, or what the system permits if None.
+
+    Raises RequestError if shortening is requested for a system other than a double integrator.
+    """
     can_be = isinstance(system, DoubleIntegrator)
     if simplify and not can_be:
         raise RequestError(
@@ -171,7 +182,7 @@ def _check_simplify(simplify: bool | None, system: System) -> bool:
 
 
 def check_optimization(request: KinodynamicRequest, effort: Effort) -> None:
-    """Raise RequestError where optimization is requested but the trajectory is not shortened."""
+    """Raise RequestError if optimization is requested but the trajectory is not shortened."""
     if request.shortens or not effort.optimizes:
         return
     why = (
@@ -189,8 +200,9 @@ def outcome_before_search(request: KinodynamicRequest) -> tuple[PlannerStatus, s
     """
     Return the status of a request that needs no search, and the reason; None for one that does.
 
-    No search is needed when an end is not free, when no path joins the two components, when a
-    collision is proved inevitable, or when the start is in the goal region.
+    No search is needed when start or goal is not free, when start and goal lie in different
+    components of the free space, when the boundary is forbidden and a collision is proved
+    inevitable, or when the start lies in the goal region and is slow enough.
     """
     known = outcome_without_search(request.geometric)
     if known is not None and known[0] is not PlannerStatus.SOLVED:
@@ -207,7 +219,7 @@ def outcome_before_search(request: KinodynamicRequest) -> tuple[PlannerStatus, s
 
 
 def _is_doomed(request: KinodynamicRequest) -> bool:
-    """Return whether a collision with the boundary is proved inevitable from the start."""
+    """Return whether a collision with the boundary is proved inevitable; False proves nothing."""
     problem = request.problem
     if can_brake(problem, problem.start, request.system.control_dim):
         return False

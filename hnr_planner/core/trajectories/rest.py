@@ -1,9 +1,10 @@
 """
 Motions from a moving start to rest: straight braking, or a tree of Hit-and-Run steps on curves.
 
-Where straight braking meets the boundary, a tree grows from the start: a step has a uniform
-direction of full acceleration, and a duration uniform up to the time at which its curve meets the
-boundary or the limit on speed. It ends with the first state from which straight braking is free.
+If straight braking meets the boundary, a tree grows from the start. A step has full acceleration
+in a uniform random direction. Its duration is uniform up to the time at which the curve meets the
+boundary or the limit on speed, at most ``HORIZON`` times the time to brake from full speed. The
+tree is complete with the first state from which straight braking is free.
 """
 
 import math
@@ -25,7 +26,12 @@ FROM_START = 0.5
 
 @kernel
 def come_to_rest(problem, rng, steps, n_rows, n_iterations):
-    """Grow the tree until a state can be braked: (rows, transitions, row at rest or NONE)."""
+    """
+    Grow the tree in the table ``steps`` until straight braking from a state is free.
+
+    Returns (number of rows, transitions made, row that is at rest). The last is NONE (-1) if
+    ``n_iterations`` steps were not enough.
+    """
     if n_rows == 1 and can_brake(problem, steps.states[0], steps.controls.shape[1]):
         n_rows = _braked(problem.system, steps, n_rows, 0)
         return n_rows, 0, n_rows - 1
@@ -42,7 +48,12 @@ def come_to_rest(problem, rng, steps, n_rows, n_iterations):
 
 @kernel
 def _braked(system, steps, n_rows, row):
-    """Append the state at rest after braking from ``row``; return the number of rows."""
+    """
+    Append the state at rest after straight braking from ``row``; return the number of rows.
+
+    A state that would brake for less than ``SHORTEST_STEP`` counts as at rest: nothing is
+    appended.
+    """
     state, control, end = steps.states[row], steps.controls[n_rows], steps.states[n_rows]
     duration = brake(system, state, control)
     if duration < SHORTEST_STEP:
@@ -57,7 +68,11 @@ def _braked(system, steps, n_rows, row):
 
 @kernel
 def _curve_step(problem, rng, steps, row, n_rows):
-    """Write a Hit-and-Run step on curves from ``row``; return whether it is long enough."""
+    """
+    Write to row ``n_rows`` a random step from ``row``; return whether it may be kept.
+
+    It may if it lasts at least ``SHORTEST_STEP`` and its end keeps the limit on speed.
+    """
     system = problem.system
     state, control, end = steps.states[row], steps.controls[n_rows], steps.states[n_rows]
     dim = len(control)

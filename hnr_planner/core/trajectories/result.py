@@ -1,4 +1,4 @@
-"""Result of ``plan_trajectory``."""
+"""The type of the result of ``plan_trajectory``."""
 
 from dataclasses import dataclass
 
@@ -17,7 +17,8 @@ class TrajectoryResult(SearchResult):
     Attributes
     ----------
     trajectory : Trajectory or None
-        Times, states and controls; None when none was found.
+        Times, states and controls; None when no trajectory was found or it was refused as too
+        long.
 
     """
 

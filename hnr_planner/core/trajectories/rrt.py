@@ -1,8 +1,9 @@
 """
 RRT under a controller (paper, Section 5; LaValle and Kuffner 2001).
 
-The desired position is uniform in the space, the desired velocity uniform in the ball of
-velocities; the controller drives there from the nearest vertex, in position and weighted velocity.
+The desired position is uniform in the space. The desired velocity is uniform in the ball whose
+radius is the largest speed. The controller drives to this target from the nearest vertex;
+distances include position and weighted velocity.
 """
 
 from dataclasses import dataclass, field
@@ -36,13 +37,13 @@ class KinodynamicRRT(DrivenPlanner):
     name: ClassVar[str] = 'kinodynamic_rrt'
 
     def start(self, problem: KinodynamicProblem, rng: Stream) -> 'KinodynamicRRTSearch':
-        """Start a tree at the problem's start."""
+        """Return a search whose tree begins at the start of ``problem``, with a random stream."""
         return KinodynamicRRTSearch(problem, self.driving, rng)
 
 
 @dataclass
 class KinodynamicRRTSearch(DrivenSearch):
-    """A running search by one tree, whose vertices are the states at the ends of transitions."""
+    """A running search by one tree; its vertices are the last states of transitions."""
 
     rejected: int = field(init=False, default=0)
     #: Position and weighted velocity (rows, 2 dim) of each vertex.
@@ -60,11 +61,11 @@ class KinodynamicRRTSearch(DrivenSearch):
 
     @property
     def counts(self) -> dict[str, int]:
-        """Number of integration steps, and of uniform proposals outside the space."""
+        """Numbers of integration steps tried and of uniform proposals outside the space."""
         return {**super().counts, 'rejected_proposals': self.rejected}
 
     def advance(self, n_iterations: int) -> None:
-        """Handle at most ``n_iterations`` further proposals inside the space."""
+        """Make at most ``n_iterations`` further transitions; none once the search is solved."""
         if self.solved:
             return
         self._grow_arrays(n_iterations)
@@ -95,7 +96,11 @@ def _plant(problem, driving, steps, points, tree):
 
 @kernel
 def _grow(problem, driving, rng, steps, points, tree, n_rows, n_iterations):
-    """Grow the tree: (rows, transitions, steps tried, rejected proposals, whether solved)."""
+    """
+    Grow the tree by at most ``n_iterations`` transitions, in place.
+
+    Returns (number of rows, transitions made, steps tried, rejected proposals, whether solved).
+    """
     problem, rng, steps = borrowed(problem), borrowed(rng), borrowed(steps)
     points, tree = borrowed(points), borrowed(tree)
     geometric, iterations, n_steps, rejected = problem.geometric, 0, 0, 0
@@ -127,7 +132,7 @@ def _grow(problem, driving, rng, steps, points, tree, n_rows, n_iterations):
 
 @kernel
 def _write_point(system, weight, state, point):
-    """Write position and weighted velocity of a state to a point (2 dim,)."""
+    """Write to ``point`` (2 dim,) the position and the weighted velocity of a state."""
     dim = len(point) // 2
     velocity(system, state, point[dim:])
     for i in range(dim):

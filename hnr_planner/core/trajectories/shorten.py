@@ -1,9 +1,10 @@
 """
 Shortening of a motion of the double integrator in time; its duration never increases.
 
-Two states of the motion are connected directly, or through a state near one between them, and a
-connection that is free and faster replaces the motion between them (after Hauser and
-Ng-Thow-Hing, 2010). The end may lie anywhere in the goal region, at any speed allowed there.
+A proposal connects two states of the motion directly, or through a random state near a third one
+that lies between the two in time. A connection that is free and faster replaces the motion between
+the two states (after Hauser and Ng-Thow-Hing, 2010). The end of the motion may move anywhere in
+the goal region, at any speed allowed there.
 """
 
 import math
@@ -37,16 +38,17 @@ def shorten(
     problem: KinodynamicProblem, motion: Motion, rng: Stream, proposals: int, brakes: bool
 ) -> Motion:
     """
-    Return a motion from the same start into the same goal region after some proposals.
+    Return a motion from the same start into the same goal region, after some proposals.
 
-    With ``brakes`` its end can be braked straight to rest if that of ``motion`` can.
+    With ``brakes``, if straight braking from the end of ``motion`` to rest is free, it is free
+    from the end of the result too.
     """
     return Motion(*_shorten(problem, *motion, rng, proposals, brakes))
 
 
 @kernel
 def _shorten(problem, durations, states, controls, rng, proposals, brakes):
-    """Apply proposals to a motion; return the fields of the resulting motion."""
+    """Return durations, states and controls of a motion after ``proposals`` proposals."""
     problem, rng = borrowed(problem), borrowed(rng)
     system, dim = problem.system, controls.shape[1]
     first, second = empty_connection(dim), empty_connection(dim)
@@ -99,9 +101,9 @@ def _shorten(problem, durations, states, controls, rng, proposals, brakes):
 @kernel
 def _locate(durations, t):
     """
-    Return the index of the step at time ``t`` [s], and the time since its begin.
+    Return the index of the step at time ``t`` [s] of a motion, and the time since that step began.
 
-    A time closer to the begin or the end of the step than the shortest step is moved there.
+    A time within ``SHORTEST_STEP`` of the begin or end of the step is moved to that begin or end.
     """
     last = len(durations) - 1
     for k in range(last):
@@ -113,7 +115,7 @@ def _locate(durations, t):
 
 @kernel
 def _snapped(t, duration):
-    """Return 0 or ``duration`` for a time ``t`` closer to it than the shortest step."""
+    """Return ``t``, or 0 or ``duration`` if that is within ``SHORTEST_STEP`` of ``t``."""
     if t < SHORTEST_STEP:
         return 0.0
     return t if t <= duration - SHORTEST_STEP else duration
@@ -121,7 +123,12 @@ def _snapped(t, duration):
 
 @kernel
 def _shift(system, rng, window, state):
-    """Move a state at random, at most as far as acceleration can in the window."""
+    """
+    Shift position and velocity of a state at random, in place.
+
+    The shifts are normal. Their scale is a random fraction, ``LEAST_SHIFT`` to 1, of the change
+    that full acceleration can cause in ``window`` [s]; the speed is clipped to the limit.
+    """
     dim = len(state) // 2
     fraction = LEAST_SHIFT ** uniform(rng)
     change = fraction * system.max_acceleration * window
@@ -137,7 +144,12 @@ def _shift(system, rng, window, state):
 
 @kernel
 def _draw_end(problem, rng, last, end, brakes):
-    """Draw an end in the goal region, at a speed allowed there: near the last one or uniform."""
+    """
+    Write to ``end`` a random state in the goal region, at a speed allowed there.
+
+    In half of the calls it is uniform, in the others near the state ``last``. It is ``last`` if
+    the draw is not at the goal, or if ``brakes`` and straight braking from it is not free.
+    """
     geometric, dim = problem.geometric, len(problem.geometric.goal)
     fraction = LEAST_SHIFT ** uniform(rng) if uniform(rng) < 0.5 else 1.0
     copy_into(end, last)
@@ -157,7 +169,7 @@ def _draw_end(problem, rng, last, end, brakes):
 
 @kernel
 def is_free(problem, state, connection):
-    """Return whether a connection from ``state`` meets no boundary."""
+    """Return whether the pieces of a connection, driven from ``state``, meet no boundary."""
     at, end = state.copy(), np.empty(len(state))
     for k in range(connection.n[0]):
         duration, control = connection.durations[k], connection.controls[k]
@@ -170,7 +182,12 @@ def is_free(problem, state, connection):
 
 @kernel
 def _spliced(system, durations, states, controls, window, ends, connections):
-    """Return the motion with a window of time replaced by one or two connections."""
+    """
+    Return the motion with a window of time replaced by one or two connections.
+
+    ``window`` is (step, time since its begin) of both ends of the window, ``ends`` the states
+    before, between and after the connections. A second connection without pieces is left out.
+    """
     i, after_i, j, after_j = window
     a, between, b = ends
     rest = durations[j] - after_j

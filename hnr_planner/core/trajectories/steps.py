@@ -1,14 +1,15 @@
 """
 Steps of constant control: the table of a search, and the effect of the boundary on a step.
 
-Every step is a row of the table, with the row that it began at. The effect of the boundary on a
-step that meets it is a setting:
+Every step is a row of the table, and names the row whose state the step began at. The effect of
+the boundary on a step that meets it is a setting:
 
 ``forbidden``
-    The step is not taken; nor is one from whose end straight braking would meet the boundary. So
-    from every state in the table a collision can be avoided.
+    The step is not taken. Nor is a step taken from whose end straight braking would meet the
+    boundary. So from every state in the table, except perhaps the start, a collision can be
+    avoided.
 ``inelastic``
-    The step ends right before the boundary, and at rest (paper, Section 5).
+    The step ends right before the boundary, in a state at rest (paper, Section 5).
 """
 
 from typing import NamedTuple
@@ -32,16 +33,16 @@ from numpy.typing import NDArray
 
 class Steps(NamedTuple):
     """
-    Steps in a table; row 0 is the start, which is the end of no step.
+    The steps of a search as rows; row 0 is the start, which no step leads to.
 
     Attributes
     ----------
     states : (rows, state_dim)
-        The state at the end of each step.
+        The state at the end of each step, in the kernel frame.
     parents : (rows,) int64
-        The row that the step began at; NONE for the start.
+        The row whose state the step began at; NONE (-1) for the start.
     controls : (rows, control_dim)
-        Control of each step.
+        Constant control of each step, in the kernel frame.
     durations : (rows,)
         Duration of each step [s].
 
@@ -54,7 +55,7 @@ class Steps(NamedTuple):
 
 
 def first_step(problem: KinodynamicProblem) -> Steps:
-    """Return the table that holds the start."""
+    """Return a table of one row, the start of ``problem``."""
     start, control_dim = problem.start, len(problem.geometric.goal)
     return Steps(
         start[np.newaxis].copy(), np.array([NONE]), np.zeros((1, control_dim)), np.zeros(1)
@@ -62,7 +63,7 @@ def first_step(problem: KinodynamicProblem) -> Steps:
 
 
 def motion_to(steps: Steps, row: int) -> Motion:
-    """Return the motion of the steps from the start to ``row``."""
+    """Return the motion along the steps that lead from the start to ``row`` of the table."""
     rows = rows_to(steps.parents, row)
     return Motion(steps.durations[rows[1:]], steps.states[rows], steps.controls[rows[1:]])
 
@@ -70,9 +71,10 @@ def motion_to(steps: Steps, row: int) -> Motion:
 @kernel
 def take_step(problem, inelastic, duration, state, control, end):
     """
-    Write the end of a step of at most ``duration``.
+    Write to ``end`` the state at the end of a step of at most ``duration`` [s].
 
-    Returns (its duration, below 0 where it is not taken; whether the boundary stopped it).
+    Returns (duration of the step [s], whether the boundary stopped the robot). The duration is
+    below 0 if the step is not taken.
     """
     space, system = problem.geometric.space, problem.system
     met = contact(system, space, state, control, duration)
@@ -97,11 +99,12 @@ def can_brake(problem, state, control_dim):
 @kernel
 def _stop_before(problem, state, control, met, end):
     """
-    Write the state at rest right before the boundary is met; return when, below 0 for never.
+    Write to ``end`` the state at rest right before contact; return the time of the stop [s].
 
-    It is earlier than contact by the time in which full speed covers the margin, and by more where
-    the boundary is met at a grazing angle. A moving robot that is nearer to the boundary stops at
-    once.
+    ``met`` is the time of contact [s] from ``state``. The stop is earlier by the time in which
+    full speed covers the margin, and by more where the boundary is met at a grazing angle. If the
+    robot would advance by no more than the margin, it stops at once, in ``SHORTEST_STEP``; if it
+    was at rest already, the return value is below 0: the step is not taken.
     """
     geometric, dim = problem.geometric, len(problem.geometric.goal)
     back = geometric.margin / problem.system.max_speed

@@ -1,4 +1,4 @@
-"""Motions from stop to stop: at rest at each vertex of a polyline, as fast as possible between."""
+"""Motions along a polyline that are at rest at each vertex and as fast as possible between."""
 
 import math
 
@@ -18,7 +18,12 @@ TESTS = 2000
 
 
 def shorten_stops(geometric: Problem, stops: Floats) -> Floats:
-    """Return a free polyline (k, dim) with the ends of ``stops`` (m, dim), shortened and taut."""
+    """
+    Return a shorter free polyline (k, dim) with the same ends as ``stops`` (m, dim).
+
+    Vertices are skipped where a straight segment is free; then the rest is pulled taut. Each of
+    the two methods makes at most ``TESTS`` visibility tests.
+    """
     kept = np.zeros(len(stops), dtype=np.int64)
     n_kept, _ = skip(geometric.space, NO_ISLANDS, stops, kept, 1, True, TESTS)
     beyond = kept[n_kept - 1] + 1
@@ -31,9 +36,10 @@ def shorten_stops(geometric: Problem, stops: Floats) -> Floats:
 @kernel
 def drive_stops(system, stops):
     """
-    Return the motion (durations, states, controls) that rests at each of ``stops`` (m, dim).
+    Return the motion (durations, states, controls) that is at rest at each of ``stops`` (m, dim).
 
-    Each segment has a ramp up, a cruise at full speed where it is long enough, and a ramp down.
+    A segment has a ramp up, a cruise at full speed if it is long enough for that, and a ramp down.
+    A segment whose ramp would be shorter than ``SHORTEST_STEP`` is left out.
     """
     n, dim = len(stops) - 1, stops.shape[1]
     durations, controls = np.empty(3 * n), np.zeros((3 * n, dim))

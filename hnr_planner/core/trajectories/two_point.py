@@ -2,16 +2,17 @@
 Two-point connections of the double integrator: from one state to another within a given time.
 
 Along an axis, from speed ``v0`` to ``v1`` over a displacement ``d`` in the time ``T``, the motion
-of least acceleration has a constant magnitude ``a`` with one change of sign:
+of least acceleration has a constant magnitude ``a`` with one change of sign. That acceleration
+solves
 
     T^2 a^2 + 2 (T (v0 + v1) - 2 d) a - (v1 - v0)^2 = 0.
 
-One root has its change of sign within ``T``, so every axis has one solution, and all take the same
-time. The first axis is laid along the displacement: where its speed would exceed what the other
-axes leave of the limit, it cruises at that. The connection is feasible when acceleration and
-velocity, as vectors over all axes, keep their limits; the shortest time is found by bisection
-(Hauser and Ng-Thow-Hing, "Fast smoothing of manipulator trajectories using optimal
-bounded-acceleration shortcuts", 2010, have limits for each axis by itself).
+One of the two roots puts the change of sign within ``T``, so every axis has one solution, and all
+axes take the same time. The first axis is laid along the displacement. If its speed would exceed
+the part of the limit that the other axes leave, it cruises at that speed. The connection is
+feasible when acceleration and velocity, as vectors over all axes, keep their limits. A short time
+is found by bisection. (Hauser and Ng-Thow-Hing, "Fast smoothing of manipulator trajectories using
+optimal bounded-acceleration shortcuts", 2010, have separate limits for each axis.)
 """
 
 import math
@@ -34,21 +35,21 @@ DISPLACEMENT, BEFORE, AFTER, ACCELERATION, FIRST, LAST = range(6)
 
 class Connection(NamedTuple):
     """
-    Work arrays, and the connection that was found: its first ``n`` pieces.
+    Work arrays, and the connection that was found: the first ``n[0]`` pieces.
 
     Attributes
     ----------
     axes : (6, dim)
-        For each axis: displacement, speeds before and after, acceleration, and the times at which
-        it ends and begins again with the other sign.
+        For each axis: displacement, speeds at the begin and the end, acceleration, time [s] at
+        which the acceleration ends, and time at which it begins again with the other sign.
     mirror : (dim,)
         Normal of the reflection that lays the first axis along the displacement; 0 for none.
     cuts : (2 dim + 2,)
-        Ends of the pieces [s].
+        Times from the begin of the connection at which pieces may end [s], in order.
     durations, controls : (2 dim + 1,), (2 dim + 1, dim)
         Duration [s] and acceleration of each piece.
     n : (1,) int64
-        Number of pieces.
+        Number of pieces in use.
 
     """
 
@@ -62,7 +63,7 @@ class Connection(NamedTuple):
 
 @kernel
 def empty_connection(dim):
-    """Return the work arrays for connections in ``dim`` dimensions."""
+    """Return new work arrays for connections of positions in ``dim`` dimensions."""
     return Connection(
         np.zeros((6, dim)),
         np.zeros(dim),
@@ -76,10 +77,10 @@ def empty_connection(dim):
 @kernel
 def connect(system, a, b, longest, work):
     """
-    Write a fast connection from state ``a`` to ``b`` in ``work``; return its duration [s].
+    Write to ``work`` a fast connection from state ``a`` to ``b``; return its duration [s].
 
-    It takes at most ``longest`` [s]; inf where there is none. Feasible times need not be an
-    interval, so a shorter connection may exist.
+    The connection takes at most ``longest`` [s]. The result is inf if no connection takes exactly
+    ``longest``. Feasible times need not be an interval, so a shorter connection may exist.
     """
     too_short, enough = _prepare(system, a, b, work), longest
     if enough < SHORTEST_STEP or too_short > enough or not _fits(system, enough, work):
@@ -99,7 +100,7 @@ def connect(system, a, b, longest, work):
 
 @kernel
 def _prepare(system, a, b, work):
-    """Compute the axes; return a time [s] below which there is no connection."""
+    """Compute the axes of ``work``; return a time [s] below which no connection is feasible."""
     axes, mirror = work.axes, work.mirror
     dim = len(mirror)
     displacement, change = 0.0, 0.0
@@ -133,7 +134,7 @@ def _reflect(mirror, vector):
 
 @kernel
 def _fits(system, duration, work):
-    """Solve every axis for a duration; return whether the limits are kept."""
+    """Solve every axis for a duration [s]; return whether both limits of the system are kept."""
     axes = work.axes
     dim = axes.shape[1]
     most = system.max_acceleration * (1.0 - SPARE)
@@ -161,7 +162,7 @@ def _fits(system, duration, work):
 
 @kernel
 def _fit_axis(axis, duration):
-    """Solve one axis without a limit on speed; return its speed at the change of sign."""
+    """Solve one axis (6,) without a limit on speed; return the speed at the change of sign."""
     change = axis[AFTER] - axis[BEFORE]
     half = duration * (axis[BEFORE] + axis[AFTER]) - 2.0 * axis[DISPLACEMENT]
     root = math.sqrt(half * half + duration * duration * change * change)
@@ -176,7 +177,12 @@ def _fit_axis(axis, duration):
 
 @kernel
 def _cut_off(axis, peak, fastest, duration):
-    """Limit the speed of an axis to ``fastest`` by a cruise; inf acceleration if impossible."""
+    """
+    Limit the speed of an axis (6,) to ``fastest`` by a cruise, in place.
+
+    ``peak`` is the speed of the axis at the change of sign. An axis that is slow enough, or that
+    begins or ends too fast, stays as it is; the acceleration becomes inf where no cruise fits.
+    """
     before, after = axis[BEFORE], axis[AFTER]
     ends = max(abs(before), abs(after))
     if abs(peak) <= fastest or ends > fastest * (1.0 + EXCESS):
@@ -199,7 +205,7 @@ def _cut_off(axis, peak, fastest, duration):
 
 @kernel
 def _speed_at(axis, t, duration):
-    """Return the speed along an axis at time ``t``."""
+    """Return the speed along an axis (6,) at time ``t`` [s] from the begin of the connection."""
     speed = axis[BEFORE] + axis[ACCELERATION] * min(t, axis[FIRST])
     return speed - axis[ACCELERATION] * max(t - axis[LAST], 0.0)
 
@@ -207,10 +213,10 @@ def _speed_at(axis, t, duration):
 @kernel
 def _write_pieces(duration, work):
     """
-    Divide the time where an axis changes its acceleration, and write the pieces.
+    Divide ``duration`` where an axis changes its acceleration; write the pieces to ``work``.
 
-    A piece below the shortest step is joined to the next, the last one to the one before: that
-    changes a velocity by rounding only.
+    A piece shorter than ``SHORTEST_STEP`` is joined to the next piece, and a last one to the piece
+    before: that changes a velocity by rounding only.
     """
     axes, cuts = work.axes, work.cuts
     dim, n = axes.shape[1], 0
@@ -239,7 +245,7 @@ def _write_pieces(duration, work):
 
 @kernel
 def _sort(values):
-    """Sort a few values (n,): numba's own sort takes a second to compile."""
+    """Sort a few values (n,) in place; numba's own sort would take a second to compile."""
     for i in range(1, len(values)):
         value, k = values[i], i
         while k > 0 and value < values[k - 1]:

@@ -9,7 +9,12 @@ import numpy as np
 
 @kernel
 def a_star(grid, start, goal):
-    """Find a shortest path (m, 2) over neighbouring cells, with the octile distance heuristic."""
+    """
+    Return a shortest path (m, 2) over centres of neighbouring cells, by the octile heuristic.
+
+    ``start`` and ``goal`` (x, y) are in the kernel frame of ``grid`` (units of cells); a path
+    between their cells must exist.
+    """
     free_distance = grid.free_distance
     columns = free_distance.shape[1]
     source, target = cell_of(start, columns), cell_of(goal, columns)

@@ -1,4 +1,4 @@
-"""Indices of cells and the steps between neighbours."""
+"""Row-major indices of the cells of a grid, and the steps between neighbouring cells."""
 
 import math
 
@@ -13,7 +13,11 @@ STEPS = ((0, 1), (1, 0), (0, -1), (-1, 0), (1, 1), (1, -1), (-1, 1), (-1, -1))
 
 @kernel
 def may_step(free_distance, cell, down, right):
-    """Return whether a step is free: a diagonal step needs all four cells around it free."""
+    """
+    Return whether a step from the free cell of index ``cell`` by (``down``, ``right``) is free.
+
+    A straight step needs a free cell at its end, a diagonal step all four cells around it.
+    """
     row, column = cell // free_distance.shape[1], cell % free_distance.shape[1]
     if free_distance[row + down, column + right] == 0:
         return False
@@ -24,13 +28,13 @@ def may_step(free_distance, cell, down, right):
 
 @kernel
 def cell_of(point, columns):
-    """Return the index, row-major, of the cell that contains a point (x, y)."""
+    """Return the row-major index of the cell that contains a point (x, y) in units of cells."""
     return int(point[1]) * columns + int(point[0])
 
 
 @kernel
 def trace(parent, source, target, columns):
-    """Return the path (m, 2) over cell centres from source to target along the parents."""
+    """Return the centres (m, 2) of the cells from ``source`` to ``target``, found by parents."""
     cells = [target]
     while cells[-1] != source:
         cells.append(parent[cells[-1]])

@@ -7,7 +7,12 @@ import numpy as np
 
 @kernel
 def pull_string(grid, path):
-    """Return a path (m, 2) less every vertex whose neighbours can be joined by a free segment."""
+    """
+    Return a path (m, 2) without the vertices that free straight segments can skip.
+
+    In order, a vertex is kept only if the segment from the last one kept to the next one is not
+    free. Both ends are kept. Points are in the kernel frame of ``grid``.
+    """
     kept = np.empty_like(path)
     kept[0] = path[0]
     n_kept = 1

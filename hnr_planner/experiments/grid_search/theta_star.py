@@ -11,7 +11,12 @@ import numpy as np
 
 @kernel
 def theta_star(grid, start, goal):
-    """Find a short path (m, 2) over cell centres, with the straight distance as heuristic."""
+    """
+    Return a short path (m, 2) over centres of cells, with the straight distance as heuristic.
+
+    ``start`` and ``goal`` (x, y) are in the kernel frame of ``grid`` (units of cells); a path
+    between their cells must exist.
+    """
     free_distance = grid.free_distance
     columns = free_distance.shape[1]
     source, target = cell_of(start, columns), cell_of(goal, columns)
@@ -53,5 +58,5 @@ def _distance(a, b, columns):
 
 @kernel
 def _centre(cell, columns):
-    """Return the centre (2,) of a cell."""
+    """Return the centre (x, y) [cells] of the cell of a row-major index."""
     return np.array((cell % columns + 0.5, cell // columns + 0.5))

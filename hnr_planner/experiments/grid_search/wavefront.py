@@ -13,10 +13,12 @@ WAVE = 2.0
 @kernel
 def wavefront(grid, start, goal):
     """
-    Find a path (m, 2) by descent along the potential of the goal over the whole map.
+    Return a path (m, 2) over centres of cells that descends the potential of the goal.
 
-    The potential is a first-order approximation of the distance to the goal. It is computed in
-    waves of width ``WAVE``; cells beyond the current wave are postponed to the next one.
+    The potential is a first-order approximation of the distance to the goal, for every cell of the
+    map. It is computed in waves of width ``WAVE``; cells beyond the current wave are postponed to
+    the next one. ``start`` and ``goal`` (x, y) are in the kernel frame of ``grid``; a path between
+    their cells must exist.
     """
     columns = grid.free_distance.shape[1]
     source, target = cell_of(start, columns), cell_of(goal, columns)
@@ -30,7 +32,11 @@ def wavefront(grid, start, goal):
 
 @kernel
 def potential(grid, goal):
-    """Return the distance (rows * columns,) of cells to the goal [cells]; inf without a path."""
+    """
+    Return the approximate distance (rows * columns,) [cells] of each cell to the goal.
+
+    Cells are in row-major order; the distance is inf where no path leads to the goal.
+    """
     free_distance = grid.free_distance
     columns = free_distance.shape[1]
     distances = np.full(free_distance.size, np.inf, dtype=np.float32)
@@ -73,7 +79,7 @@ def _spread(free, columns, target, potential):
 
 @kernel
 def _enqueue(free, waiting, queue, n_queued, cell):
-    """Append a cell to a queue if it is free and in no queue; return the queue's length."""
+    """Append a cell to a queue if it is free and not waiting in one; return the queue's length."""
     if free[cell] == 0 or waiting[cell]:
         return n_queued
     waiting[cell] = True
@@ -83,7 +89,7 @@ def _enqueue(free, waiting, queue, n_queued, cell):
 
 @kernel
 def _raised(potential, cell, columns):
-    """Return the potential of a cell by the eikonal equation from its lower neighbours."""
+    """Return a cell's potential by the eikonal equation, from its lower straight neighbours."""
     a = min(potential[cell - 1], potential[cell + 1])
     b = min(potential[cell - columns], potential[cell + columns])
     if abs(a - b) >= 1.0:
@@ -93,7 +99,7 @@ def _raised(potential, cell, columns):
 
 @kernel
 def _lowest_neighbour(free_distance, potential, cell):
-    """Return the neighbour in the direction of steepest descent."""
+    """Return the neighbour of steepest descent of the potential; ``cell`` if none is lower."""
     columns = free_distance.shape[1]
     lowest, steepest = cell, 0.0
     for down, right in STEPS:

@@ -1,9 +1,9 @@
 """
 Mixing time of random walks: steps until the start is forgotten (paper, Theorem 5: order n^6).
 
-Many chains of a walk start at a point at the far end of a set. The total variation distance
-between their law and the uniform law is measured after a growing number of steps, until it is
-below .1:
+Many chains of a walk start at one end of a set: at a single point, or for one of the solids
+uniformly in one half. The total variation distance between the distribution of the chains and the
+uniform distribution is measured after a growing number of steps, until it is below 0.1:
 
 - in sets in the plane, for Hit-and-Run and both ball walks (``curves``);
 - in sets of 2 to 30 dimensions, for Hit-and-Run, beside the paper's bound (``dimension``).
@@ -46,7 +46,7 @@ LAYOUT.append(3 * ['relaxation'] + 3 * ['dimension'])
 
 
 class Case(NamedTuple):
-    """Name and dimension of a set, a walk, and the radius of a ball walk [m], else 0."""
+    """A case: name and dimension of a set, a walk, and its radius [m], 0 for Hit-and-Run."""
 
     shape: str
     dim: int
@@ -55,7 +55,11 @@ class Case(NamedTuple):
 
 
 def cases() -> list[Case]:
-    """Return the sets in the plane with all walks, and the solids with Hit-and-Run."""
+    """
+    Return the sets in the plane and the solids with Hit-and-Run, and the sets with ball walks.
+
+    Ball walks run in the sets of ``RADII`` only, with every radius.
+    """
     planar = [Case(name, 2, 'hit_and_run', 0.0) for name in planar_sets()]
     balls = [
         Case(name, 2, walk, times * least)
@@ -71,7 +75,11 @@ def cases() -> list[Case]:
 
 
 def run(case: Case, seed: int) -> dict[str, float]:
-    """Run chains until they are mixed; return distances on the way and the relaxation time."""
+    """
+    Run chains until they are mixed; return the distances on the way and the relaxation time.
+
+    The relaxation time [steps] is measured for Hit-and-Run in the plane only, else nan.
+    """
     if case.shape in SOLIDS:
         mixing_set = solid(case.shape, case.dim)
     else:

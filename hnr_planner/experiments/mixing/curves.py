@@ -52,7 +52,7 @@ def make_walk(name: str, radius: float) -> Walk:
 
 
 def best(results: Results) -> Results:
-    """Return the rows of the radius with which a ball walk in a set mixes first."""
+    """Return the rows of one radius: that with the fewest steps to mix, by the upper estimate."""
 
     def last(rows: Results) -> float:
         value = steps(rows)[1].value
@@ -62,7 +62,7 @@ def best(results: Results) -> Results:
 
 
 def draw_curves(axes: Axes, results: Results, name: str) -> None:
-    """Draw the total variation of each walk as a band between the two estimates."""
+    """Draw the total variation of each walk in the set ``name``, between its two estimates."""
     for walk, look in WALKS.items():
         rows = best(results.where(shape=name, walk=walk))
         drawn = [k for k in DRAWN if np.isfinite(rows[f'above_{k}']).all()]
@@ -93,7 +93,7 @@ def curves_table(results: Results) -> str:
 
 
 def radii_table(results: Results) -> str:
-    """Return a table of the ball walks' mixing steps by radius, by the estimate from above."""
+    """Return a table of the ball walks' mixing steps for each radius, by the upper estimate."""
     rows = []
     for name, least in RADII.items():
         for walk in BALL_WALKS:

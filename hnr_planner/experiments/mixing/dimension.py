@@ -1,8 +1,12 @@
 """
-Growth of the mixing steps with the dimension n of a set, beside the paper's bound.
+Steps that Hit-and-Run takes until it is mixed, as the dimension n of a set grows.
 
-Theorem 5 bounds the steps by C' n^6 log(M / epsilon) and leaves C' open. Lemmas 13 and 6 give a
-number for the ball, the only set here whose boundary meets the theorem's assumption on curvature.
+The chains count as mixed when the total variation distance between their distribution and the
+uniform one is below ``MIXED``. The measured steps are compared with the paper's bound: Theorem 5
+bounds the steps by C' n^6 log(M / epsilon), where M bounds the density of the start relative to
+the uniform density and epsilon is the distance wanted. The theorem leaves the constant C' open.
+Lemmas 13 and 6 give a number for the ball, the only set here whose boundary meets the theorem's
+assumption on curvature.
 """
 
 from collections.abc import Sequence
@@ -19,7 +23,8 @@ from numpy.typing import NDArray
 
 #: Dimensions of the solids.
 DIMENSIONS = (2, 3, 5, 8, 12, 20, 30)
-#: Two ranges to fit exponents to: they agree where the steps grow like one power of n.
+#: Two ranges of dimensions in which an exponent of n is fitted: the two exponents agree if the
+#: steps grow like one power of n.
 LOW, HIGH = DIMENSIONS[:4], DIMENSIONS[3:]
 #: Bound M on the density of the start, relative to the uniform one, in the paper's bound.
 WARMTH = 2.0
@@ -34,25 +39,34 @@ LOOKS = {
 
 
 def bound(dim: int) -> float:
-    """Return the paper's bound on the steps, as printed, for the ball of volume 1."""
+    """
+    Return the paper's bound on the steps of Hit-and-Run until mixed in the ball of volume 1.
+
+    The bound is as printed, for a start of density at most ``WARMTH`` and the distance ``MIXED``.
+    """
     return mixing_bound(printed_conductance(BallImage.unit_ball(dim)), WARMTH, MIXED)
 
 
 def exponents(results: Results, dimensions: Sequence[int]) -> Mean:
-    """Fit the exponent of n in the growth of the steps, and return its mean over the runs."""
+    """
+    Return the mean over the runs of the exponent of n that fits the steps until mixed.
+
+    ``results`` are those of one set; of them, those of ``dimensions`` are fitted. The steps of a
+    run are the middle of its two estimates.
+    """
     each = [results.where(dim=dim) for dim in dimensions]
     middle = np.array([(rows['first'] + rows['last']) / 2.0 for rows in each])
     return Results({'exponent': _slopes(dimensions, middle)}).mean('exponent')
 
 
 def _slopes(dimensions: Sequence[int], values: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the slopes (k,) of log values (n_dimensions, k) against log dimensions."""
+    """Return the slope (k,) of each column of log(values) (n_dimensions, k) by log(dimensions)."""
     slopes: NDArray[np.float64] = np.polyfit(np.log(dimensions), np.log(values), 1)[0]
     return slopes
 
 
 def draw_dimensions(axes: Axes, results: Results) -> None:
-    """Draw the steps against the dimension, with a line of slope n^6 to compare."""
+    """Draw the steps until mixed against the dimension n for each set, and a line of slope n^6."""
     for name, look in LOOKS.items():
         here = results.where(shape=name)
         each = [steps(here.where(dim=dim)) for dim in DIMENSIONS]
@@ -69,7 +83,7 @@ def draw_dimensions(axes: Axes, results: Results) -> None:
 
 
 def dimensions_table(results: Results) -> str:
-    """Return a table of steps by set and dimension, the bound, and the fitted exponents."""
+    """Return a table of steps until mixed by dimension and set, bounds, and fitted exponents."""
     rows: list[list[object]] = [
         [
             dim,

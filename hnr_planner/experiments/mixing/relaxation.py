@@ -1,10 +1,10 @@
 """
-Relaxation time of Hit-and-Run against conductance.
+Relaxation time of Hit-and-Run, compared with the conductance Phi of a set in the plane.
 
-Both are computed from the flow between the cells of a lattice; the time is also measured, from the
-moves of chains between cells. By Cheeger's inequality the time lies between 1 / (2 Phi) and
-2 / Phi^2 (Lawler and Sokal 1988): near the first where one narrow door is the only obstacle to
-mixing, nearer the second in long sets.
+Time and conductance are computed from the flow between the cells of a lattice. The time is also
+measured, from the moves of chains between cells. By Cheeger's inequality the time lies between
+1 / (2 Phi) and 2 / Phi^2 (Lawler and Sokal 1988): near the lower bound where one narrow door is
+the only obstacle to mixing, nearer the upper bound in long sets.
 """
 
 from functools import cache
@@ -22,8 +22,9 @@ import numpy as np
 
 #: Refinement of the lattice along each axis, and number of lines, for the computed flow.
 REFINEMENT, N_LINES = 4, 1 << 18
-#: Draws of each chain in which moves are counted; lag of a move as a fraction of the computed
-#: time, and its minimum [steps]: the error made by cells falls with the lag.
+#: Draws of each chain in which moves between cells are counted; lag of a move, the steps between
+#: its two ends, as a fraction of the computed relaxation time; and the least lag [steps].
+#: The error that the size of the cells causes falls with the lag.
 N_DRAWS, LAG, MIN_LAG = 1000, 0.5, 8
 #: Label, colour and marker of each set, by the first word of its name.
 LOOKS = {
@@ -35,7 +36,7 @@ LOOKS = {
 
 
 class Computed(NamedTuple):
-    """Conductance of the best cut of a set, and relaxation time [steps]."""
+    """Computed values of a set: conductance of the best cut found, and relaxation time [steps]."""
 
     conductance: float
     relaxation: float
@@ -43,7 +44,7 @@ class Computed(NamedTuple):
 
 @cache
 def computed(name: str) -> Computed:
-    """Compute conductance and relaxation time of a set from the flow of Hit-and-Run."""
+    """Compute conductance and relaxation time of a set in the plane from Hit-and-Run's flow."""
     mixing_set = planar_sets()[name]
     rows, columns = mixing_set.lattice
     flow = cell_flow(mixing_set.space, (REFINEMENT * rows, REFINEMENT * columns), N_LINES)
@@ -51,7 +52,11 @@ def computed(name: str) -> Computed:
 
 
 def measured(name: str, chains: Chains) -> float:
-    """Measure the relaxation time [steps] of Hit-and-Run, continuing chains that have mixed."""
+    """
+    Return the relaxation time [steps] of Hit-and-Run in the set ``name``, from moves of chains.
+
+    The mixed ``chains`` are continued for ``N_DRAWS`` steps.
+    """
     mixing_set = planar_sets()[name]
     draws, _ = walk_on(mixing_set.space, chains, N_DRAWS)
     cells = mixing_set.cells(draws.reshape(-1, 2)).reshape(draws.shape[:2])

@@ -1,8 +1,9 @@
 """
-Sets in which mixing is measured: a start, and cells whose shares of the volume are known.
+Sets in which mixing is measured: a start, and cells whose fractions of the volume are known.
 
-The cells must resolve the slowest direction of mixing. In the plane they are the squares of a
-lattice; in solids (module ``solids``) they are slices along the way from the start.
+The cells must be small along the direction in which chains mix most slowly. In the plane they are
+the squares of a lattice; in solids (module ``solids``) they are slices along the way from the
+start.
 """
 
 from collections.abc import Callable, Sequence
@@ -19,36 +20,40 @@ Floats = NDArray[np.float64]
 Starts = Callable[[int, np.random.Generator], Floats]
 Cells = Callable[[Floats], NDArray[np.int64]]
 
-#: Number of chains for each cell: gives a floor of the total variation of .04 in every set.
+#: Number of chains for each cell that is not empty. The estimate of the total variation from above
+#: is then about 0.04 (the floor) even for chains that are mixed, in every set.
 CHAINS_PER_CELL = 100
 #: Widths of the door between two rooms of 1 m x 1 m, and half the thickness of their wall [m].
 DOORS = (0.05, 0.1, 0.2, 0.4)
 WALL = 1e-6
-#: Distance of the star's inner corners from its centre; its tips have 1.
+#: Distance of the star's inner corners from its centre [m]; the tips are 1 m from the centre.
 NOTCH = 0.35
 #: Width of the spirals' corridor, thickness of their walls, and side of a grid's cell [m].
 WIDTH, THICKNESS, RESOLUTION = 1.2, 0.1, 0.05
-#: Sizes of the spirals: width of the square, in corridors.
+#: Sizes of the spirals: how many corridors lie side by side across the square.
 TURNS = (4, 6, 8)
 
 
 @dataclass(frozen=True)
 class MixingSet:
     """
-    A set with the start of the chains and a partition into cells.
+    A set in which mixing is measured, with starts of chains and a partition into cells.
 
     Attributes
     ----------
     space : Space
         The set.
     starts : callable
-        ``starts(n_chains, rng)`` returns one point (dim,) for all chains, or (n_chains, dim).
+        ``starts(n_chains, rng)`` returns one point (dim,) for all chains, or one point for each
+        chain (n_chains, dim).
     cells : callable
-        Returns the index (k,) of the cell of each point (k, dim).
+        ``cells(points)`` returns the index (k,) into ``shares`` of the cell of each point
+        (k, dim).
     shares : (n_cells,)
         Fraction of the set's volume in each cell.
     lattice : (rows, columns)
-        Squares that the bounds of a set in the plane are divided into; (0, 0) for solids.
+        Number of equal rectangles that the bounds of a set in the plane are divided into; (0, 0)
+        for solids.
 
     """
 
@@ -60,12 +65,12 @@ class MixingSet:
 
     @property
     def n_chains(self) -> int:
-        """Number of chains of one run."""
+        """Number of chains of one run: ``CHAINS_PER_CELL`` for each cell that is not empty."""
         return CHAINS_PER_CELL * int(np.count_nonzero(self.shares))
 
 
 def at(point: Sequence[float] | Floats) -> Starts:
-    """Return the ``starts`` of chains that all begin at one point (dim,)."""
+    """Return a function for ``MixingSet.starts`` that starts all chains at one point (dim,)."""
     return lambda n_chains, rng: np.array(point, dtype=float)
 
 
@@ -97,7 +102,7 @@ def _star() -> shapely.Polygon:
 def _of_polygon(
     polygon: shapely.Polygon, start: Sequence[float], lattice: tuple[int, int]
 ) -> MixingSet:
-    """Divide a polygon into the squares of a lattice, with exact areas as shares."""
+    """Build the set of a polygon with the cells of a lattice over its bounds; areas are exact."""
     space = PolygonSpace(polygon)
     (left, bottom), (right, top) = space.bounds
     x, y = np.linspace(left, right, lattice[1] + 1), np.linspace(bottom, top, lattice[0] + 1)
@@ -119,7 +124,7 @@ def _spiral(turns: int) -> MixingSet:
 
 
 def _squares(space: Space, lattice: tuple[int, int]) -> Cells:
-    """Return the function from points (k, 2) to indices (k,) of the lattice's squares."""
+    """Return the function that maps points (k, 2) [m] to row-major indices (k,) of squares."""
     rows, columns = lattice
     lower, upper = space.bounds
 

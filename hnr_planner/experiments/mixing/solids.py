@@ -1,7 +1,9 @@
 """
 Sets of any dimension, divided into cells along the way from the corner where walks start.
 
-Walks start nine tenths of the way from the middle of a set to one of its corners.
+Unless a set says otherwise, all walks start at one point, ``FAR`` (nine tenths) of the way from
+the middle of the set to one of its corners (a ball: to its boundary; the beams: to a corner of the
+first beam).
 """
 
 from collections.abc import Callable
@@ -18,18 +20,23 @@ from scipy.special import betaincinv, ndtri
 FAR = 0.9
 #: Number of cells along the way, and in each arm of the crossed beams.
 N_CELLS, N_DEPTHS = 10, 3
-#: Half the length, and half the width of the beams.
+#: Half the length and half the width of the crossed beams.
 LONG, WIDE = 1.0, 0.5
 
 
 def cube(dim: int) -> MixingSet:
-    """Build the unit cube; cells by the sum of the coordinates."""
+    """Build the unit cube; its cells are ranges of the sum of the coordinates."""
     space, corner = BoxSpace(np.zeros(dim), np.ones(dim)), np.full(dim, (1.0 - FAR) / 2.0)
     return MixingSet(space, at(corner), *_by_sum(dim, N_CELLS))
 
 
 def half_full_cube(dim: int) -> MixingSet:
-    """Build the unit cube, with uniform starts on the half around the corner: warmth M = 2."""
+    """
+    Build the unit cube with a uniform start in the half of it that contains the corner 0.
+
+    The density of the start is M = 2 times that of the uniform distribution on the cube. The cells
+    are ranges of the sum of the coordinates.
+    """
 
     def starts(n_chains: int, rng: np.random.Generator) -> Floats:
         points = rng.uniform(size=(n_chains, dim))
@@ -41,7 +48,7 @@ def half_full_cube(dim: int) -> MixingSet:
 
 
 def ball(dim: int) -> MixingSet:
-    """Build the unit ball; cells by the first coordinate, which has a beta distribution."""
+    """Build the ball of radius 1; its cells are slices of equal volume by the first coordinate."""
     fractions, shape = np.arange(1, N_CELLS) / N_CELLS, (dim + 1) / 2.0
     start = FAR * np.eye(dim)[0]
     edges = 2.0 * betaincinv(shape, shape, fractions) - 1.0
@@ -49,7 +56,12 @@ def ball(dim: int) -> MixingSet:
 
 
 def simplex(dim: int) -> MixingSet:
-    """Build x >= 0, sum <= 1; cells by the first coordinate, which exceeds t on (1 - t)^n."""
+    """
+    Build the simplex x >= 0, sum(x) <= 1; its cells are slices of equal volume.
+
+    The slices are ranges of the first coordinate, which exceeds t on a fraction (1 - t)^n of the
+    volume.
+    """
     space = PolytopeSpace(np.vstack([-np.eye(dim), np.ones(dim)]), np.append(np.zeros(dim), 1.0))
     start = np.full(dim, (1.0 - FAR) / (dim + 1.0)) + FAR * np.eye(dim)[0]
     edges = 1.0 - (1.0 - np.arange(1, N_CELLS) / N_CELLS) ** (1.0 / dim)
@@ -57,7 +69,11 @@ def simplex(dim: int) -> MixingSet:
 
 
 def joined_boxes(dim: int) -> MixingSet:
-    """Build two unit cubes that share half a face; cells by cube, and by the sum within."""
+    """
+    Build two unit cubes that share half of a face, for a dimension of at least 2.
+
+    The cells of each cube are ranges of the sum of the coordinates relative to its lower corner.
+    """
     shift = np.append([1.0, 0.5], np.zeros(dim - 2))
     space = UnionSpace(BoxSpace(np.zeros(dim), np.ones(dim)), BoxSpace(shift, 1.0 + shift))
     corner, n_each = np.full(dim, (1.0 - FAR) / 2.0), N_CELLS // 2
@@ -111,17 +127,17 @@ def solid(name: str, dim: int) -> MixingSet:
 
 
 def _by_first(edges: Floats) -> tuple[Cells, Floats]:
-    """Return cells between edges of the first coordinate, and equal shares."""
+    """Return cells between ``edges`` of the first coordinate, and equal volume fractions."""
     n_cells = len(edges) + 1
     return lambda points: np.searchsorted(edges, points[:, 0]), np.full(n_cells, 1.0 / n_cells)
 
 
 def _by_sum(dim: int, n_cells: int) -> tuple[Cells, Floats]:
     """
-    Return cells of the unit cube by the sum of the coordinates, and their shares.
+    Return cells of the unit cube by the sum of the coordinates, and their fractions of volume.
 
-    The density of the sum is the B-spline over the knots 0, 1, ..., n. The edges are quantiles of
-    the normal approximation; the shares are exact.
+    The density of the sum is the B-spline over the knots 0, 1, ..., n. The edges of the cells are
+    quantiles of the normal approximation, so the fractions differ slightly; they are exact.
     """
     edges = dim / 2.0 + np.sqrt(dim / 12.0) * ndtri(np.arange(1, n_cells) / n_cells)
     below = BSpline.basis_element(np.arange(dim + 1.0)).antiderivative()(edges)

@@ -1,8 +1,9 @@
 """
-Total variation distance between the law of many chains and the uniform law, after growing steps.
+Total variation distance of many chains from the uniform distribution, as their steps grow.
 
-Two estimates bracket the distance. The distance of the observed shares of the cells is biased
-upwards, by about a known floor. The cross-fitted estimate, in which one half of the chains selects
+Two estimates bracket the distance. The estimate from above is the distance of the observed
+fractions of chains in the cells from the cells' fractions of the volume. It is biased upwards, by
+about a known floor. The cross-fitted estimate, in which one half of the chains selects
 the overfull cells and the other half measures their excess, is biased downwards.
 """
 
@@ -27,14 +28,19 @@ CHECKPOINTS = tuple(accumulate(stride for n_checks, stride in STRIDES for _ in r
 
 
 class MixingRun(NamedTuple):
-    """Distances at the ``CHECKPOINTS`` until the chains were mixed, and the chains after that."""
+    """Distances at the ``CHECKPOINTS`` that were reached, and the chains after the last one."""
 
     distances: Sequence[TotalVariation]
     chains: Chains
 
 
 def run_until_mixed(mixing_set: MixingSet, walk: Walk, seed: int) -> MixingRun:
-    """Run chains from their start until they are mixed, or until the last checkpoint."""
+    """
+    Run chains of a walk from their starts until they are mixed, or until the last checkpoint.
+
+    They count as mixed once the estimate from above is below ``MIXED`` at the end of one of the
+    ``STRIDES``.
+    """
     space, shares, n_chains = mixing_set.space, mixing_set.shares, mixing_set.n_chains
     starts = mixing_set.starts(n_chains, np.random.default_rng(seed))
     chains = begin_chains(space, starts, n_chains=n_chains, seed=seed)
@@ -50,7 +56,7 @@ def run_until_mixed(mixing_set: MixingSet, walk: Walk, seed: int) -> MixingRun:
 
 def columns(distances: Sequence[TotalVariation]) -> dict[str, float]:
     """
-    Return the distances as columns of the results: nan after the last one.
+    Return the distances as columns of the results: nan at checkpoints that were not reached.
 
     ``first`` and ``last`` are the steps until the estimates from below and from above are below
     ``MIXED``.
@@ -68,7 +74,11 @@ def columns(distances: Sequence[TotalVariation]) -> dict[str, float]:
 
 
 def steps_to_mix(distances: Sequence[float]) -> float:
-    """Return the steps at which distances fall below ``MIXED``, interpolated linearly, or nan."""
+    """
+    Return the steps at which distances at the ``CHECKPOINTS`` first fall below ``MIXED``.
+
+    Steps between two checkpoints are interpolated linearly; nan if no distance is below.
+    """
     mixed = np.flatnonzero(np.array(distances) < MIXED)
     if len(mixed) == 0:
         return math.nan
@@ -80,14 +90,14 @@ def steps_to_mix(distances: Sequence[float]) -> float:
 
 
 def between(first: Mean, last: Mean) -> Mean:
-    """Return the middle of two estimates, and half the width of both with their intervals."""
+    """Return the middle and half the width of the range of two estimates with their intervals."""
     low = first.value - np.nan_to_num(first.half)
     high = last.value + np.nan_to_num(last.half)
     return Mean((low + high) / 2.0, (high - low) / 2.0)
 
 
 def steps(results: Results) -> tuple[Mean, Mean]:
-    """Return the mean mixing steps by both estimates; nan where a run did not mix."""
+    """Return the mean mixing steps by both estimates; both nan if any run did not mix."""
     if np.isnan(results['last']).any():
         return Mean(math.nan, math.nan), Mean(math.nan, math.nan)
     return results.mean('first'), results.mean('last')
