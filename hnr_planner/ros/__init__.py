@@ -1,1 +1,1 @@
-"""The ROS nodes: they translate between messages and the library, and do nothing else."""
+"""The ROS nodes, which translate between ROS messages and the package, and decide nothing."""

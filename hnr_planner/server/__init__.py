@@ -1,5 +1,5 @@
 """
-What a planning server decides, free of ROS: from requests to responses.
+The planning server without ROS: everything between a request and its response.
 
-``PlanningServer`` is the way in; ``settings`` is the one table of parameters.
+``PlanningServer`` is the class to use; the module ``settings`` has the table of all parameters.
 """

@@ -13,23 +13,24 @@ from hnr_planner.server.outcomes import Outcome, Refusal
 
 Value = TypeVar('Value')
 
-#: Time [s] that a search gets at least, so that it can still prove a goal unreachable.
+#: Time [s] that a search gets even when the deadline has passed: enough to prove a goal
+#: unreachable.
 SHORTEST_TIME = 1e-3
 
 
 @dataclass(frozen=True)
 class RequestLimits:
     """
-    When a request has to end.
+    The time limit and the cancellation that end a request.
 
     Parameters
     ----------
     time_limit : float
-        What it may take [s].
+        Longest time [s] that the request may take; named in messages.
     deadline : float
-        When that is over, by the clock ``working_time``.
+        Value of the clock ``working_time`` [s] at which the time limit has passed.
     cancel : threading.Event
-        Ends it when it is set.
+        Ends the request when it is set.
 
     """
 
@@ -39,25 +40,25 @@ class RequestLimits:
 
     @classmethod
     def from_now(cls, time_limit: float, cancel: threading.Event) -> 'RequestLimits':
-        """Return the limits of a request that begins now."""
+        """Return the limits of a request that begins now and may take ``time_limit`` [s]."""
         return cls(time_limit, working_time() + time_limit, cancel)
 
     @property
     def time_left(self) -> float:
-        """Return the time that a search gets [s]."""
+        """Time [s] that a search gets: up to the deadline, but at least ``SHORTEST_TIME``."""
         return max(self.deadline - working_time(), SHORTEST_TIME)
 
     @property
     def time_is_up(self) -> bool:
-        """Return whether the time limit has passed."""
+        """Whether ``working_time()`` has reached the deadline."""
         return working_time() >= self.deadline
 
     def hold(self) -> bool:
-        """Return whether the request has to end."""
+        """Return whether the request has to end: it was cancelled, or its time is up."""
         return self.cancel.is_set() or self.time_is_up
 
     def check(self) -> None:
-        """Raise Refusal (CANCELLED, TIMEOUT) when the request has to end."""
+        """Raise Refusal, after a search: CANCELLED if ``cancel`` is set, TIMEOUT if time is up."""
         if self.cancel.is_set():
             raise Refusal(Outcome.CANCELLED, 'the request was cancelled after the search')
         if self.time_is_up:
@@ -69,7 +70,11 @@ class RequestLimits:
 
     @contextmanager
     def enforced(self) -> Iterator[None]:
-        """Raise Refusal (CANCELLED, TIMEOUT) when interpreted kernels in the block take long."""
+        """
+        Interrupt interpreted kernels in a ``with`` block when the request has to end.
+
+        An interruption raises Refusal (CANCELLED, TIMEOUT). Compiled kernels are not interrupted.
+        """
         try:
             with interruptible(self.hold):
                 yield
@@ -81,14 +86,16 @@ class RequestLimits:
         """
         Return what ``work`` returns, or ``otherwise`` where a limit interrupts its kernels.
 
+        Only interpreted kernels can be interrupted: by a cancellation, or when time is up.
+
         Parameters
         ----------
         work : callable
-            What to do.
+            Work without arguments.
         otherwise : Value
-            Its result when it was interrupted.
+            What to return when ``work`` was interrupted.
         least : float
-            Time [s] that it gets in any case.
+            Time [s] that ``work`` gets before either limit can interrupt it.
 
         """
         first = working_time() + least

@@ -1,21 +1,26 @@
-"""Warnings about a map that can be used, but hardly in the way that was meant."""
+"""
+Warnings about a map that can be used, but suggests a mistake in the setup.
+
+The mistakes are a robot without a radius on a map that is not inflated, and a map without a frame.
+"""
 
 from hnr_planner.maps import OccupancyMap
 from hnr_planner.server.settings import Settings
 import numpy as np
 
-#: The value of a cell of Nav2's costmaps in which the centre of the robot must not be.
+#: The value, in an ``OccupancyGrid`` of a Nav2 costmap, of a cell that the centre of the robot
+#: must not enter.
 INSCRIBED = 99
 
 
 class MapAdvice:
-    """Makes each kind of warning once."""
+    """Gives warnings about maps, each kind (radius, frame) only once in its lifetime."""
 
     def __init__(self) -> None:
         self._given: set[str] = set()
 
     def warnings(self, occupancy: OccupancyMap, settings: Settings) -> list[str]:
-        """Return the warnings about a map that have not been given yet."""
+        """Return the warnings about ``occupancy`` of those kinds that were not returned before."""
         found = {
             'radius': _about_radius(occupancy, settings),
             'frame': _about_frame(occupancy),
@@ -26,7 +31,12 @@ class MapAdvice:
 
 
 def _about_radius(occupancy: OccupancyMap, settings: Settings) -> str:
-    """Return a warning where paths are those of a point on a map that is not inflated."""
+    """
+    Return a warning if paths would be those of a point robot on a map that is not inflated.
+
+    Empty when the radius is above 0, the occupied threshold is that for a costmap, or any cell
+    has the value ``INSCRIBED`` of an inflated costmap.
+    """
     if settings.robot_radius > 0.0 or settings.occupied_threshold >= INSCRIBED:
         return ''
     if np.any(occupancy.data == INSCRIBED):
@@ -38,7 +48,7 @@ def _about_radius(occupancy: OccupancyMap, settings: Settings) -> str:
 
 
 def _about_frame(occupancy: OccupancyMap) -> str:
-    """Return a warning where a map has no frame."""
+    """Return a warning if the frame of the map is empty; otherwise an empty text."""
     if occupancy.frame:
         return ''
     return (

@@ -1,8 +1,8 @@
 """
-The map in use: the last good one that arrived, prepared as a space.
+The store of the map in use: the last good map that arrived, prepared as a ``GridSpace``.
 
-Maps and changed parameters come from one thread at a time, requests from many. A request takes
-a ``MapSnapshot``, which never changes, and so a new map cannot disturb a search.
+New maps and changed parameters are handled one at a time, while many threads may take the map for
+requests. A request takes a ``MapSnapshot``, which never changes: so no new map disturbs a search.
 """
 
 from collections.abc import Callable
@@ -18,7 +18,19 @@ from hnr_planner.server.settings import Settings
 
 @dataclass(frozen=True)
 class MapSnapshot:
-    """A map ready for planning; ``number`` counts the preparations."""
+    """
+    A map that is ready for planning.
+
+    Parameters
+    ----------
+    space : GridSpace
+        The space that was prepared from the map.
+    occupancy : OccupancyMap
+        The map as it was received.
+    number : int
+        Number of this preparation in its store, from 1: a higher one is newer.
+
+    """
 
     space: GridSpace
     occupancy: OccupancyMap
@@ -26,12 +38,12 @@ class MapSnapshot:
 
     @property
     def frame(self) -> str:
-        """Return the name of the map frame."""
+        """Name of the map frame; it may be empty."""
         return self.occupancy.frame
 
 
 class MapStore:
-    """Holds the newest good map as a space for the settings that are in force."""
+    """Holds the last good map, as a space prepared with the parameters in force."""
 
     def __init__(self, settings: Settings) -> None:
         self._arguments = settings.space_arguments
@@ -43,14 +55,16 @@ class MapStore:
 
     def receive(self, read_map: Callable[[], OccupancyMap]) -> MapSnapshot:
         """
-        Put the map that ``read_map`` returns into use and return it as a space.
+        Put the map that ``read_map`` returns into use, and return it prepared as a space.
 
-        One that is the same as the map in use is not prepared again.
+        A map with the same cells, place and frame as the map in use is not prepared again: the
+        snapshot in use is returned.
 
         Raises
         ------
         MapError
-            When the map cannot be prepared, for whatever reason; what was in use stays in use.
+            When the map cannot be read or prepared, for any reason; the snapshot that was in use,
+            if there was one, stays in use.
 
         """
         with self._one_at_a_time:
@@ -73,12 +87,15 @@ class MapStore:
 
     def use(self, settings: Settings) -> MapSnapshot | None:
         """
-        Prepare the map again if ``settings`` ask for another space; return it if they do.
+        Prepare the last good map again if ``settings`` change a parameter of the space.
+
+        Return the new snapshot; None when no such parameter has changed, or there is no map yet.
+        During the preparation no map is in use.
 
         Raises
         ------
         MapError
-            When that fails; then no map is in use.
+            When the preparation fails; then no map is in use.
 
         """
         with self._one_at_a_time:
@@ -103,16 +120,20 @@ class MapStore:
 
     @property
     def snapshot(self) -> MapSnapshot | None:
-        """Return the map in use, if there is one."""
+        """The map in use; None when there is none."""
         return self._snapshot
 
     @property
     def occupancy(self) -> OccupancyMap | None:
-        """Return the last good map, if there was one."""
+        """The last good map as it was received, in use or not; None before the first one."""
         return self._occupancy
 
     def newest(self) -> MapSnapshot:
-        """Return the map in use, or raise Refusal (NO_MAP, MAP_NOT_READY)."""
+        """
+        Return the map in use.
+
+        Without one, raise Refusal: MAP_NOT_READY during a preparation, else NO_MAP.
+        """
         snapshot = self._snapshot
         if snapshot is None:
             raise Refusal(*self._missing)
@@ -127,7 +148,7 @@ class MapStore:
 
 
 def _in_words(error: Exception) -> str:
-    """Return in words what is wrong with a map, or what failed in its preparation."""
+    """Return why a map was refused; for errors other than HnrError with the type of the error."""
     if isinstance(error, HnrError):
         return str(error)
     return f'preparing the map failed: {type(error).__name__}: {" ".join(str(error).split())}'

@@ -1,7 +1,7 @@
 """
-Goals of Nav2's planner server as requests, and outcomes as its error codes; Nav2 is not needed.
+Translation of Nav2's action goals into requests, and of outcomes into Nav2's error codes.
 
-The names of error codes are those that ``nav2_msgs`` has in Jazzy.
+This module does not import Nav2. The names of error codes are those of the ROS 2 release Jazzy.
 """
 
 from collections.abc import Sequence
@@ -11,7 +11,8 @@ from hnr_planner.server.requests import NOWHERE, PlanRequest, Pose
 from hnr_planner.server.responses import PlanResponse
 from hnr_planner.server.settings import Settings
 
-#: Names of Nav2's error codes; any other outcome is UNKNOWN, and the words name the outcome.
+#: The name of Nav2's error code for each outcome; an outcome that is not listed is UNKNOWN, and
+#: the error message names it.
 ERRORS = {
     Outcome.SOLVED: 'NONE',
     Outcome.BAD_FRAME: 'TF_ERROR',
@@ -28,17 +29,20 @@ def goal_request(
     start: Pose | None, poses: Sequence[Pose], planner_id: str, settings: Settings
 ) -> PlanRequest:
     """
-    Return the request that the goal of an action stands for.
+    Return the request for a path that the goal of one of Nav2's actions stands for.
+
+    Its tolerance is the parameter ``default_tolerance``.
 
     Parameters
     ----------
     start : Pose, optional
-        None for where the robot is.
+        Where the path begins; None for the pose of the robot.
     poses : sequence of Pose
-        Poses on the way, and the last one to end at.
+        Poses to pass, in their order; the path ends at the last one. Without any, the goal of the
+        request is ``NOWHERE``.
     planner_id : str
-        The algorithm, or a name that ``planner_aliases`` gives it; empty for the parameter
-        ``algorithm``.
+        Name of an algorithm, or an alias of one from the parameter ``planner_aliases``; empty
+        for the parameter ``algorithm``.
     settings : Settings
         The parameters in force.
 
@@ -54,12 +58,17 @@ def goal_request(
 
 
 def robot_pose(settings: Settings) -> Pose:
-    """Return the pose of the robot, in its own frame."""
+    """Return the pose of the robot in ``robot_base_frame``: the origin of that frame."""
     return Pose((0.0, 0.0, 0.0), frame=settings.robot_base_frame)
 
 
 def error_name(response: PlanResponse) -> str:
-    """Return the name of Nav2's error code for how a request ended."""
+    """
+    Return the name of Nav2's error code for the outcome of ``response``.
+
+    A request without poses and one with an unknown planner have codes of their own, and a blocked
+    start or goal outside the map is OUTSIDE_MAP in the place of OCCUPIED.
+    """
     if response.solved:
         return 'NONE'
     request = response.request
@@ -68,7 +77,7 @@ def error_name(response: PlanResponse) -> str:
     if not request.names_a_planner:
         return 'INVALID_PLANNER'
     name = ERRORS.get(response.outcome, 'UNKNOWN')
-    # A pose on the way has the code of the end that it is of its leg.
+    # After a failed leg the request is that leg: a pose on the way is its start or its goal.
     ends = {'START_OCCUPIED': request.start, 'GOAL_OCCUPIED': request.goal}
     if name in ends and _is_outside(ends[name], response):
         return name.replace('OCCUPIED', 'OUTSIDE_MAP')
@@ -76,5 +85,5 @@ def error_name(response: PlanResponse) -> str:
 
 
 def _is_outside(pose: Pose, response: PlanResponse) -> bool:
-    """Return whether a pose in the map's frame lies outside the map."""
+    """Return whether ``pose`` is outside the map of ``response``; False if there is no map."""
     return response.snapshot is not None and not response.snapshot.space.reaches_to(pose.point)

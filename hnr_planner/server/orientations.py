@@ -1,4 +1,4 @@
-"""Quaternions (x, y, z, w) and yaw angles [rad]."""
+"""Rotations in space as quaternions (x, y, z, w), and their yaw angles about z [rad]."""
 
 import math
 
@@ -10,7 +10,7 @@ LEVEL: Quaternion = (0.0, 0.0, 0.0, 1.0)
 
 
 def normalised(quaternion: Quaternion) -> Quaternion | None:
-    """Return ``quaternion`` with norm 1; None when it is zero or not finite."""
+    """Return ``quaternion`` scaled to norm 1; None when it is all zeros or not finite."""
     largest = max(abs(number) for number in quaternion)
     if not all(math.isfinite(number) for number in quaternion) or largest == 0.0:
         return None
@@ -22,13 +22,13 @@ def normalised(quaternion: Quaternion) -> Quaternion | None:
 
 
 def yaw_of(quaternion: Quaternion) -> float:
-    """Return the rotation about z [rad] of a normalised quaternion."""
+    """Return the yaw (angle about z) [rad], in -pi..pi, of a quaternion of norm 1."""
     x, y, z, w = quaternion
     return math.atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))
 
 
 def tilt_of(quaternion: Quaternion) -> float:
-    """Return the angle [rad] between the rotated and the upright z axis, norm 1 given."""
+    """Return the angle [rad] by which a quaternion of norm 1 tilts the z axis, yaw left out."""
     x, y, _, _ = quaternion
     return 2.0 * math.asin(min(1.0, math.hypot(x, y)))
 

@@ -1,4 +1,4 @@
-"""The names under which a request can end, and the exception that ends it early."""
+"""The outcomes of requests, and the exception ``Refusal`` that ends one without a result."""
 
 import enum
 
@@ -6,7 +6,11 @@ from hnr_planner.core.errors import HnrError
 
 
 class Outcome(enum.Enum):
-    """How a request ended; where the planner decides that, the name is its status' name."""
+    """
+    How a request ended.
+
+    An outcome that the planner decides has the same name as the planner's status.
+    """
 
     SOLVED = enum.auto()
     SAMPLED = enum.auto()
@@ -28,12 +32,12 @@ class Outcome(enum.Enum):
 
     @property
     def is_success(self) -> bool:
-        """Return whether the caller got a path or draws."""
+        """Whether the caller got what was asked for: a path (SOLVED) or draws (SAMPLED)."""
         return self in (Outcome.SOLVED, Outcome.SAMPLED)
 
 
 class Refusal(HnrError):
-    """A request ends without a result: the name of the outcome, and why in words."""
+    """A request ends without a result: with ``outcome``, and the reason ``why`` in words."""
 
     def __init__(self, outcome: Outcome, why: str) -> None:
         super().__init__(why)

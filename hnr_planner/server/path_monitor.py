@@ -1,4 +1,4 @@
-"""The last path, checked on every map that comes."""
+"""A monitor that checks the last path that was found on every map that comes after it."""
 
 from collections.abc import Callable
 from contextlib import suppress
@@ -21,9 +21,10 @@ class PathMonitor:
     newest_map : callable
         Returns the map in use, or raises Refusal.
     report : callable
-        Called for each path and at each change: with whether the path is free, why that changed
-        (empty for a path just found), and, where a newer map blocks it, the response (MAP_CHANGED)
-        that says where.
+        Called with (valid, why, changed) for each response and at each change of validity:
+        whether there is a path and it is free; why that changed, empty where no map changed it;
+        and, where a newer map blocks the path, the path's response with the outcome MAP_CHANGED
+        and the place where it is blocked, else None.
 
     """
 
@@ -38,9 +39,13 @@ class PathMonitor:
         self._valid = False
 
     def follow(self, response: PlanResponse) -> None:
-        """Check the path of ``response`` from now on, none after a failure."""
+        """
+        Check the path of ``response``, in the place of the path before, from now on.
+
+        A response without a path ends the checks and is reported as not valid.
+        """
         with self._one_at_a_time:
-            # Without its map, which may be large, and old soon.
+            # Kept without its map, which may be large and is soon out of date.
             self._response = replace(response, snapshot=None) if response.solved else None
             if response.snapshot is not None:
                 self._frame, self._number = response.frame, response.snapshot.number
@@ -49,14 +54,14 @@ class PathMonitor:
             self.check()  # a map may have come since the path was found
 
     def forget(self) -> None:
-        """Check no path any more."""
+        """End the checks of the path, if there is one, and report that it is not valid."""
         with self._one_at_a_time:
             if self._response is not None:
                 self._response = None
                 self._set(False)
 
     def check(self) -> None:
-        """Check the path on the newest map, if there is one."""
+        """Check the path, if there is one, on the newest map, and report a change of validity."""
         with self._one_at_a_time:
             if self._response is not None:
                 with suppress(Refusal):

@@ -1,4 +1,4 @@
-"""Whether a path is free on a map, and where it is blocked."""
+"""Checks whether a path is free on a map, and of which of its poses are blocked."""
 
 import math
 from typing import NamedTuple
@@ -10,19 +10,30 @@ from numpy.typing import NDArray
 
 
 class PlanarPose(NamedTuple):
-    """A position [m] and a yaw [rad] in the frame of the map."""
+    """A pose in the plane, in the frame of the map: position x, y [m] and yaw [rad]."""
 
     x: float
     y: float
     yaw: float
 
     def __str__(self) -> str:
-        """Return the pose in words."""
+        """Return the pose as text: (x, y) [m] and yaw [rad], rounded."""
         return f'({self.x:.4g}, {self.y:.4g}), yaw {self.yaw:.3g}'
 
 
 class PathVerdict(NamedTuple):
-    """The poses of a path that are blocked, and why it is not valid; empty when it is."""
+    """
+    Whether a path is valid on a map.
+
+    Parameters
+    ----------
+    blocked : list of int
+        Indices, in the poses of the path, of blocked poses: those that are not free themselves,
+        or to which the segment from the pose before is not free.
+    why : str
+        Why the path is not valid; empty when it is valid.
+
+    """
 
     blocked: list[int]
     why: str
@@ -32,23 +43,26 @@ def first_blocked_pose(
     path: NDArray[np.float64], frame: str, snapshot: MapSnapshot
 ) -> PlanarPose | None:
     """
-    Return the first pose of a path at which it is not free; None when all of it is.
+    Return the first place on a path that is not free; None when all of the path is free.
+
+    The pose lies on the first segment that is not free, not in general at a vertex; its yaw is
+    the direction of that segment.
 
     Parameters
     ----------
     path : (m, 2)
-        Vertices [m], at least two.
+        Vertices in ``frame`` [m], at least two.
     frame : str
-        Their frame; on a map with another frame all of the path counts as blocked.
+        Frame of the path; on a map with another frame the path counts as blocked at its start.
     snapshot : MapSnapshot
-        The map to check it on.
+        The map to check the path on.
 
     """
     segment = 0 if frame != snapshot.frame else snapshot.space.first_blocked_segment(path)
     if segment is None:
         return None
     begin, step = path[segment], path[segment + 1] - path[segment]
-    # The chord along the segment ends where it is blocked; it is empty where it begins blocked.
+    # The chord is the free part of the line from ``begin``: it ends where the segment is blocked.
     free = 0.0
     if frame == snapshot.frame and step.any():
         free = min(snapshot.space.chord(begin, step).upper, 1.0)
@@ -60,19 +74,21 @@ def judge_path(
     points: NDArray[np.float64], frame: str, snapshot: MapSnapshot, robot: Pose | None
 ) -> PathVerdict:
     """
-    Return whether a path is free from where the robot is, and if not, which poses are blocked.
+    Return which poses of a path are blocked from the robot on, and why the path is not valid.
+
+    A path without poses, or in another frame than the map's, is not valid.
 
     Parameters
     ----------
     points : (n, 2)
-        Positions of its poses [m]; those that are not finite count as not free.
+        Positions of the poses in ``frame`` [m]; those that are not finite count as not free.
     frame : str
-        Their frame; empty for the map's.
+        Frame of the path; empty for the map's.
     snapshot : MapSnapshot
-        The map to check it on.
+        The map to check the path on.
     robot : Pose, optional
-        The robot in the frame of the map: poses before the one nearest to it have been passed.
-        None where it is not known: then all of the path counts.
+        Pose of the robot in the frame of the map: poses before the pose nearest to the robot are
+        not judged. None where it is not known: then all poses are judged.
 
     """
     if len(points) == 0:
@@ -98,16 +114,18 @@ def judge_path(
 
 def blocked_poses(points: NDArray[np.float64], frame: str, snapshot: MapSnapshot) -> list[int]:
     """
-    Return which poses are not free, or not to be reached in a straight line from the one before.
+    Return the indices in ``points`` of blocked poses, ascending.
+
+    A pose is blocked when it is not free, or the segment to it from a free pose before it is not.
 
     Parameters
     ----------
     points : (n, 2)
-        Their positions [m]; those that are not finite count as not free.
+        Positions of the poses in ``frame`` [m]; those that are not finite count as not free.
     frame : str
-        Their frame; on a map with another frame none is free.
+        Frame of the positions; on a map with another frame all poses are blocked.
     snapshot : MapSnapshot
-        The map to check them on.
+        The map to check the poses on.
 
     """
     if frame != snapshot.frame:
@@ -122,6 +140,17 @@ def blocked_poses(points: NDArray[np.float64], frame: str, snapshot: MapSnapshot
 
 
 def nearest_pose(points: NDArray[np.float64], robot: Pose) -> int:
-    """Return the number of the pose nearest to the robot, at least one of ``points`` (n, 2)."""
+    """
+    Return the index in ``points`` of the position nearest to the robot.
+
+    Parameters
+    ----------
+    points : (n, 2)
+        Positions in the frame of ``robot`` [m], at least one; those that are not finite are
+        infinitely far away.
+    robot : Pose
+        Pose of the robot.
+
+    """
     away = points - robot.point
     return int(np.argmin(np.nan_to_num(np.hypot(away[:, 0], away[:, 1]), nan=np.inf)))

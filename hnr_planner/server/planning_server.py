@@ -1,4 +1,4 @@
-"""Every request, whoever sends it: admit it, do the work, count it."""
+"""The planning server: admits each request, does its work and counts its response."""
 
 from collections.abc import Callable
 import threading
@@ -29,9 +29,9 @@ class PlanningServer:
     newest_map : callable
         Returns the map in use, or raises Refusal.
     to_frame : callable
-        Transforms a pose into the frame of the map, or raises Refusal.
+        Transforms a pose into the frame whose name it is given, or raises Refusal (BAD_FRAME).
     report_defect : callable
-        Called with the traceback of an exception that nothing here expects.
+        Called with the traceback, as text, of any exception other than Refusal.
 
     """
 
@@ -50,7 +50,7 @@ class PlanningServer:
         self.statistics = Statistics()
 
     def plan(self, request: PlanRequest, cancel: threading.Event | None = None) -> PlanResponse:
-        """Respond to ``request``; ``cancel`` ends its search when it is set."""
+        """Return the response to ``request``; its search ends when ``cancel`` is set."""
         settings, event = self._settings(), cancel or threading.Event()
         return self._counted(
             event,
@@ -59,7 +59,7 @@ class PlanningServer:
         )
 
     def sample(self) -> SampleResponse:
-        """Draw the free space as the parameters say."""
+        """Draw points of the free space by the parameters in force, and return the response."""
         settings, event = self._settings(), threading.Event()
         return self._counted(
             event,
@@ -73,7 +73,12 @@ class PlanningServer:
         work: Callable[[], Some],
         refused: Callable[[Refusal], Some],
     ) -> Some:
-        """Return the response of ``work``, or a failure, even for a defect in it."""
+        """
+        Return what ``work`` returns, and count it; a failure is returned, never raised.
+
+        ``refused`` makes the response of a Refusal, or of INTERNAL_ERROR where ``work`` raises
+        anything else. ``cancel`` is registered among the running searches meanwhile.
+        """
         try:
             with self.searches.one(cancel):
                 response = work()

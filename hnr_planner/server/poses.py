@@ -1,4 +1,4 @@
-"""Poses along a path, as arrays."""
+"""Poses along a path, as arrays: positions on it and the yaw angles of its segments."""
 
 from typing import NamedTuple
 
@@ -6,12 +6,13 @@ from hnr_planner.server.orientations import Quaternion, yaw_of
 import numpy as np
 from numpy.typing import NDArray
 
-#: Most poses of a path. Spacing adds no more than that, and a path with more vertices is refused.
+#: Most poses that spacing adds between the vertices of a path; also the most vertices of a path:
+#: one with more is refused.
 MOST_POSES = 10_000
 
 
 class Poses(NamedTuple):
-    """Poses along a path: points (n, 2) [m] and yaw angles (n,) [rad]."""
+    """Poses in the frame of their path: points (n, 2) [m] and yaw angles (n,) [rad]."""
 
     points: NDArray[np.float64]
     yaws: NDArray[np.float64]
@@ -19,20 +20,20 @@ class Poses(NamedTuple):
 
 def poses_along(path: NDArray[np.float64], spacing: float, final_yaw: float) -> Poses:
     """
-    Return poses at most ``spacing`` apart that look along the path.
+    Return poses on a path, at most ``spacing`` apart, each directed to the next one.
 
     Every vertex is a pose and each segment is cut into equal pieces, so the line through the
-    poses is the path itself. Each pose looks to the next one; the last has ``final_yaw``.
+    poses is the path itself. The last pose has ``final_yaw``. An empty path gives no poses.
 
     Parameters
     ----------
     path : (m, 2)
         Vertices [m]; none or at least two.
     spacing : float
-        Largest distance between poses [m]; 0 for the vertices only. It is widened where it
-        would give more than ``MOST_POSES`` besides the vertices.
+        Largest distance between consecutive poses [m]; 0 for the vertices only. It is widened
+        to the length of the path divided by ``MOST_POSES`` where it is less than that.
     final_yaw : float
-        Yaw of the last pose, and of all when the path goes nowhere [rad].
+        Yaw [rad] of the last pose, and of all poses when the path has the length 0.
 
     """
     if len(path) == 0:
@@ -61,9 +62,11 @@ def pose_rows(
     path : (m, 2)
         Vertices [m]; none or at least two.
     spacing : float
-        Largest distance between poses [m]; 0 for the vertices only.
+        Largest distance between consecutive poses [m]; 0 for the vertices only. It is widened
+        as by ``poses_along``.
     goal_orientation : Quaternion
-        Of the last pose, with norm 1; roll and pitch are kept.
+        Orientation of the last pose, with norm 1; its roll and pitch are kept. All other poses
+        are level.
 
     """
     points, yaws = poses_along(path, spacing, yaw_of(goal_orientation))
@@ -75,18 +78,23 @@ def pose_rows(
 
 
 def _pieces(lengths: NDArray[np.float64], spacing: float) -> NDArray[np.int64]:
-    """Return into how many equal pieces each segment is cut, at least one."""
+    """Return into how many pieces (k,), at least 1, to cut segments of lengths (k,) [m]."""
     if spacing <= 0.0:
         return np.ones(len(lengths), dtype=np.int64)
     widened = max(spacing, float(lengths.sum()) / MOST_POSES)
-    # A length of 3 * spacing, rounded up in its last digit, is three pieces all the same.
+    # A length of 3 * spacing that rounding made a little longer still gives three pieces.
     return np.maximum(1, np.ceil(lengths / widened - 1e-9)).astype(np.int64)
 
 
 def _yaws(
     steps: NDArray[np.float64], lengths: NDArray[np.float64], final_yaw: float
 ) -> NDArray[np.float64]:
-    """Return the yaw of each segment; one without length takes that of the segment before it."""
+    """
+    Return the yaw (k,) [rad] of each segment, given its step (k, 2) and length (k,) [m].
+
+    A segment of length 0 takes the yaw of the last segment before it that has a length, or of the
+    first one after it; ``final_yaw`` where no segment has a length.
+    """
     yaws = np.arctan2(steps[:, 1], steps[:, 0])
     moving = np.flatnonzero(lengths > 0.0)
     if len(moving) == 0:

@@ -1,4 +1,4 @@
-"""Numbers of a received map or update: check them and build an ``OccupancyMap``."""
+"""Checks of the numbers of a received map or update, which become an ``OccupancyMap``."""
 
 from dataclasses import replace
 import math
@@ -9,7 +9,8 @@ from hnr_planner.server.orientations import normalised, Quaternion, tilt_of, Vec
 import numpy as np
 from numpy.typing import NDArray
 
-#: A map with smaller or larger cells [m] is a mistake: poses and clouds could not show it.
+#: Allowed side of a cell [m]; other maps are taken for mistakes, since poses and point clouds
+#: could not resolve them.
 SMALLEST_RESOLUTION, LARGEST_RESOLUTION = 1e-4, 1e3
 
 #: A map whose origin is rolled or pitched by more than this [rad] is refused.
@@ -17,15 +18,15 @@ LARGEST_TILT = 1e-3
 
 
 class MapError(HnrError, ValueError):
-    """A map cannot be used: the message says why, and the last good map stays in use."""
+    """A map, or an update of one, that cannot be used; the message says why."""
 
 
 def as_written(single: float) -> float:
     """
     Return the shortest decimal that equals ``single`` in single precision.
 
-    Messages carry a resolution of 0.05 m as 0.05000000074505806; a few thousand cells further
-    that is no longer the place that the map file means.
+    Messages carry a resolution of 0.05 m as 0.05000000074505806; over many cells the difference
+    adds up, so that far cells would not be where the map file has them.
     """
     return float(str(np.float32(single)))
 
@@ -44,13 +45,15 @@ def received_map(
     Parameters
     ----------
     cells : (n,) int8
-        All rows, one after the other.
+        Values of all cells, row by row.
     shape : (rows, cols)
-        Size that the map is said to have.
+        Size of the map by its message; it has to agree with the length of ``cells``.
     resolution : float
-        Side of a cell in single precision [m].
+        Side of a cell in single precision [m]; the map gets the shortest decimal equal to it.
     position, orientation : (3,), (4,)
-        Pose of the corner of cell [0, 0] in the map frame [m]; the quaternion has any norm.
+        Pose of the outer corner of cell [0, 0] in the map frame [m]; the quaternion
+        (x, y, z, w) may have any norm, but must not be rolled or pitched by more than
+        ``LARGEST_TILT``.
     frame : str
         Name of the map frame.
 
@@ -84,23 +87,25 @@ def updated_map(
     frame: str,
 ) -> OccupancyMap:
     """
-    Return a map with a rectangle of new cells; ``occupancy`` is not changed.
+    Return a copy of ``occupancy`` in which a rectangle has new cells.
 
     Parameters
     ----------
     occupancy : OccupancyMap, optional
         The last good map; None when there was none.
     cells : (n,) int8
-        The new cells, row by row.
+        Values of the new cells, row by row of the rectangle.
     corner, shape : (row, column), (rows, cols)
-        First cell and size of the rectangle.
+        Index in ``occupancy.data`` of the rectangle's cell of the lowest row and column, and the
+        size of the rectangle in cells.
     frame : str
-        Frame of the update; empty for the map's.
+        Frame of the update; it must be that of ``occupancy``, or empty.
 
     Raises
     ------
     MapError
-        When there is no map yet, or the rectangle does not fit; the message names the value.
+        When there is no map yet, the rectangle is not inside the map, ``cells`` has another
+        length than the rectangle, or the frame is another; the message names the value.
 
     """
     if occupancy is None:
@@ -126,7 +131,11 @@ def updated_map(
 
 
 def _origin(position: Vector, orientation: Quaternion) -> tuple[float, float, float]:
-    """Return (x, y, yaw) of the map's origin, or raise MapError."""
+    """
+    Return the pose (x, y, yaw) [m, m, rad] of a map's origin in the map frame.
+
+    Raise MapError when it is not finite, the quaternion is 0, or it is rolled or pitched.
+    """
     if not all(math.isfinite(number) for number in position):
         raise MapError(f"the map's origin must be finite, got {position}")
     unit = normalised(orientation)

@@ -1,33 +1,33 @@
-"""The line on the log about each request: its level, and how long it may be."""
+"""The one line on the log about each request: its text, its level and its greatest length."""
 
 import threading
 from typing import NamedTuple
 
 from hnr_planner.server.responses import Response
 
-#: A success that took more than this share of the time limit is slow, and logged at INFO.
+#: A success that took more than this fraction of the time limit is slow, and logged at INFO.
 SLOW = 0.5
 
-#: Characters of a line, at most: consoles and log collectors cut longer ones anywhere.
+#: Most characters of a line: consoles and log collectors may cut longer ones at any place.
 LONGEST_LINE = 500
 
 
 class LogEntry(NamedTuple):
-    """A line for the log; ``level`` is the name of a method of rclpy's loggers."""
+    """A line for the log; ``level`` is 'debug', 'info' or 'warning'."""
 
     level: str
     text: str
 
 
 class RequestLog:
-    """Makes the line of each request; a fresh start makes the next success an INFO again."""
+    """Makes the log line of each request; the first success after ``start`` is at level INFO."""
 
     def __init__(self) -> None:
         self._lock = threading.Lock()
         self._first = True
 
     def start(self) -> None:
-        """Log the next success at INFO, whatever it takes."""
+        """Give the next success the level INFO, however short its time is."""
         with self._lock:
             self._first = True
 
@@ -37,19 +37,19 @@ class RequestLog:
         """
         Return the line about a request.
 
-        A failure is a warning. A success is DEBUG unless it is the first since ``start``, slow, or
-        comes with a remark.
+        A failure is a warning. A success has the level DEBUG, but INFO when it is the first since
+        ``start``, took more than ``SLOW`` times the time limit, or has a remark.
 
         Parameters
         ----------
         caller : str
             Service, action or topic that the request came by.
         response : Response
-            How it ended.
+            How the request ended.
         time_limit : float
-            What it was allowed to take [s].
+            Longest time [s] that the request was allowed to take.
         remark : str
-            What else is to be said about the request.
+            A further note on the request, put before the reason; empty for none.
 
         """
         ended = f'{response.outcome.name} after {response.elapsed:.3f} s'
@@ -63,5 +63,5 @@ class RequestLog:
 
 
 def shortened(text: str) -> str:
-    """Return ``text`` with at most ``LONGEST_LINE`` characters."""
+    """Return ``text``, cut to ``LONGEST_LINE`` characters and ended by '…' if it is longer."""
     return text if len(text) <= LONGEST_LINE else f'{text[: LONGEST_LINE - 2]} …'

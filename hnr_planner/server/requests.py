@@ -1,4 +1,4 @@
-"""Requests to the planner as data, and the checks that need no map."""
+"""Requests for paths as data classes, and the checks of a request that need no map."""
 
 from dataclasses import dataclass
 import math
@@ -12,18 +12,18 @@ from hnr_planner.server.settings import SERVED_ALGORITHMS
 @dataclass(frozen=True)
 class Pose:
     """
-    A pose as it was requested.
+    A pose as it was requested, not checked yet.
 
     Parameters
     ----------
     position : (x, y, z)
-        In metres.
+        Position in ``frame`` [m].
     orientation : Quaternion
-        Of any norm.
+        Orientation in ``frame``: (x, y, z, w), of any norm.
     frame : str
         Frame of position and orientation; empty for the map's frame.
     stamp : int
-        Time of the frame [ns]; 0 for the latest known.
+        ROS time [ns] at which the transform from ``frame`` is looked up; 0 for the latest known.
 
     """
 
@@ -34,11 +34,11 @@ class Pose:
 
     @property
     def point(self) -> tuple[float, float]:
-        """Return (x, y) [m]."""
+        """Position (x, y) in the frame of the pose [m]."""
         return self.position[0], self.position[1]
 
 
-#: The start or goal of a request that came without one: NO_START or BAD_REQUEST.
+#: Stands for a start or goal that a request lacks; it is refused as NO_START or BAD_REQUEST.
 NOWHERE = Pose((math.nan, math.nan, math.nan))
 
 
@@ -52,12 +52,12 @@ class PlanRequest:
     start, goal : Pose
         The ends of the path.
     tolerance : float
-        How far from a goal that is blocked or unreachable the path may end [m]; it holds for the
-        poses of ``via`` too.
+        Largest distance [m] from the goal at which the path may end, where the goal is blocked or
+        unreachable; it holds for each pose of ``via`` too.
     algorithm : str
         One of ``SERVED_ALGORITHMS``.
     via : tuple of Pose
-        Poses to pass, in their order.
+        Poses to pass between start and goal, in their order.
 
     """
 
@@ -69,28 +69,34 @@ class PlanRequest:
 
     @property
     def named_poses(self) -> tuple[tuple[str, Pose], ...]:
-        """Return all poses, each with its name in words."""
+        """All poses in the order of the path, as pairs (name in words, pose)."""
         via = tuple((f'pose {number} on the way', pose) for number, pose in enumerate(self.via, 1))
         return (('start', self.start), *via, ('goal', self.goal))
 
     @property
     def omits_start(self) -> bool:
-        """Return whether the start looks like one that was left out."""
+        """Whether the start has an empty frame and lies at (0, 0), as if it was left out."""
         return self.start.frame == '' and self.start.point == (0.0, 0.0)
 
     @property
     def has_inertia(self) -> bool:
-        """Return whether the request is for a robot with inertia."""
+        """Whether the algorithm plans for a robot with inertia (a kinodynamic planner)."""
         return self.algorithm in KINODYNAMIC_PLANNERS
 
     @property
     def names_a_planner(self) -> bool:
-        """Return whether the algorithm is one that is served for the poses of this request."""
+        """Whether the algorithm is served, and without inertia where there are ``via`` poses."""
         return self.algorithm in SERVED_ALGORITHMS and not (self.has_inertia and self.via)
 
 
 def check_request(request: PlanRequest) -> None:
-    """Raise Refusal (NO_START, BAD_REQUEST) when ``request`` makes no sense on any map."""
+    """
+    Raise Refusal (NO_START, BAD_REQUEST) when ``request`` cannot be served on any map.
+
+    Start and goal must be there, the algorithm must be served, positions and orientations must be
+    finite, stamps not negative, the norm of the goal's orientation above 0, and the tolerance
+    finite and not negative.
+    """
     if request.start is NOWHERE:
         raise Refusal(Outcome.NO_START, 'there is no start yet to plan from')
     if request.goal is NOWHERE:

@@ -1,8 +1,9 @@
 """
 From a request to a response: ``respond(request, settings, newest_map, cancel)``.
 
-A request is checked, planned on the newest map, and its path is checked on the map that is newest
-then. Whatever happens, the caller gets a ``PlanResponse``.
+A request is checked and planned on the newest map. If a newer map has come by the end of the
+search, the path is checked on it and, where it is blocked, planned again. A request that is
+refused gets a ``PlanResponse`` too; only an exception other than Refusal reaches the caller.
 """
 
 from collections.abc import Callable
@@ -38,12 +39,12 @@ from numpy.typing import ArrayLike, NDArray
 
 ToFrame = Callable[[Pose, str], Pose]
 
-#: Time [s] that measuring the clearance of a path gets at least, even when the time is up.
+#: Time [s] that measuring the clearance of a path gets even when the time limit has passed.
 MEASURING_TIME = 0.02
 
 
 def only_same_frame(pose: Pose, frame: str) -> Pose:
-    """Return ``pose`` in ``frame``, or raise Refusal (BAD_FRAME): no transforms are known."""
+    """Return ``pose`` with ``frame`` filled in; raise Refusal (BAD_FRAME) if it names another."""
     if pose.frame not in ('', frame):
         raise Refusal(
             Outcome.BAD_FRAME,
@@ -61,12 +62,14 @@ def respond(
     to_frame: ToFrame = only_same_frame,
 ) -> PlanResponse:
     """
-    Plan for ``request`` and return how that ended.
+    Plan for ``request`` and return a response that says how planning ended.
+
+    The time limit of ``settings`` begins now, by the clock ``working_time``.
 
     Parameters
     ----------
     request : PlanRequest
-        The request as it arrived.
+        The request as it arrived, not checked yet.
     settings : Settings
         The parameters in force.
     newest_map : callable
@@ -74,8 +77,8 @@ def respond(
     cancel : threading.Event
         Ends the work when it is set.
     to_frame : callable
-        Transforms a pose into a frame, or raises Refusal (BAD_FRAME) with words that follow on
-        the name of the pose.
+        Transforms a pose into the frame whose name it is given, or raises Refusal (BAD_FRAME);
+        the name of the pose is put before the words of the refusal.
 
     """
     began, before = time.monotonic(), interpreted_calls()
@@ -94,7 +97,7 @@ def respond(
 
 @dataclass(frozen=True)
 class _Job:
-    """The circumstances of one request; the limits are for all of it."""
+    """The work for one request; ``limits`` hold for all its searches and checks together."""
 
     settings: Settings
     newest_map: NewestMap
@@ -102,7 +105,12 @@ class _Job:
     limits: RequestLimits
 
     def plan_for_newest_map(self, request: PlanRequest, snapshot: MapSnapshot) -> PlanResponse:
-        """Plan on ``snapshot``, and again as long as a newer map blocks the path just found."""
+        """
+        Plan on ``snapshot``, and anew on each newer map that blocks the path just found.
+
+        When the time limit passes before a path is found that the newest map leaves free, raise
+        Refusal (MAP_CHANGED).
+        """
         first = snapshot
         while True:
             response = self._plan_legs(self._in_frame(request, snapshot.frame), snapshot)
@@ -118,7 +126,11 @@ class _Job:
             snapshot = newer
 
     def _finished(self, response: PlanResponse, snapshot: MapSnapshot) -> PlanResponse:
-        """Return a solved response with its clearance and its poses."""
+        """
+        Return a solved response with its clearance and its poses added.
+
+        A path of more than ``MOST_POSES`` vertices raises Refusal (ITERATION_LIMIT).
+        """
         path, spacing = response.path, self.settings.pose_spacing
         if len(path) > MOST_POSES:
             raise Refusal(
@@ -135,18 +147,18 @@ class _Job:
         )
 
     def _clearance(self, path: NDArray[np.float64], snapshot: MapSnapshot) -> float:
-        """Return the clearance of a path [m]; NaN where the limits leave no time to measure it."""
+        """Return the clearance of a path (m, 2) [m]; NaN where the limits leave no time for it."""
         space = snapshot.space
         return self.limits.within(
             lambda: float(space.path_clearance(path)), math.nan, MEASURING_TIME
         )
 
     def _is_still_free(self, response: PlanResponse, newer: MapSnapshot) -> bool:
-        """Return whether a path found on one map is known to be one on a newer map."""
+        """Return whether a newer map leaves a path free; False when the limits cut the check."""
         return self.limits.within(lambda: _is_still_free(response, newer), False)
 
     def _map_changed(self) -> Refusal:
-        """Return the refusal for a path that a newer map has blocked."""
+        """Return the refusal (MAP_CHANGED) for a blocked path and no time left to find another."""
         return Refusal(
             Outcome.MAP_CHANGED,
             'a newer map blocks the path that was found, and the time limit of '
@@ -154,7 +166,11 @@ class _Job:
         )
 
     def _in_frame(self, request: PlanRequest, frame: str) -> PlanRequest:
-        """Return the request in the frame of the map, or raise Refusal (BAD_FRAME)."""
+        """
+        Return the request with all poses transformed to ``frame``, the frame of the map.
+
+        Raise Refusal (BAD_FRAME), with the name of the pose, where one cannot be transformed.
+        """
 
         def transform(name: str, pose: Pose) -> Pose:
             try:
@@ -166,7 +182,12 @@ class _Job:
         return replace(request, start=start, via=tuple(via), goal=goal)
 
     def _plan_legs(self, request: PlanRequest, snapshot: MapSnapshot) -> PlanResponse:
-        """Plan on one map, from each pose to the next; a leg that fails ends it, in its name."""
+        """
+        Plan one leg from each pose to the next, on one map, and return them joined.
+
+        Each leg starts where the leg before it ended. The first leg that fails ends the work: its
+        response is returned, and ``why`` names the leg.
+        """
         if not request.via:
             return self._plan(request, snapshot)
         legs: list[PlanResponse] = []
@@ -183,7 +204,7 @@ class _Job:
         return replace(legs[0], why=why, request=request, result=result)
 
     def _plan(self, request: PlanRequest, snapshot: MapSnapshot) -> PlanResponse:
-        """Plan on one map, from the start to the goal."""
+        """Plan from the start to the goal on one map; the poses of ``via`` are not looked at."""
         try:
             if request.has_inertia:
                 return self._plan_trajectory(request, snapshot)
@@ -210,10 +231,11 @@ class _Job:
 
     def _plan_trajectory(self, request: PlanRequest, snapshot: MapSnapshot) -> PlanResponse:
         """
-        Plan for a robot with inertia, at rest at the start.
+        Plan for a robot with inertia that is at rest at the start.
 
-        A goal that is blocked or unreachable gives way to the nearest point that the robot can
-        reach within the tolerance; ``why`` states it.
+        Where the goal is blocked or unreachable and the tolerance is above 0, the search is
+        repeated for the reachable point nearest the goal within the tolerance, if there is one;
+        ``why`` states this. A trajectory that is found is turned into a path as well.
         """
         goal = request.goal.point
         result = self._search_trajectory(request, snapshot, goal, moved=False)
@@ -242,7 +264,21 @@ class _Job:
     def _search_trajectory(
         self, request: PlanRequest, snapshot: MapSnapshot, goal: ArrayLike, *, moved: bool
     ) -> TrajectoryResult:
-        """Search a trajectory from the start of ``request`` to a point (2,) [m]."""
+        """
+        Search a trajectory from rest at the start of ``request`` to a point.
+
+        Parameters
+        ----------
+        request : PlanRequest
+            The request, in the map's frame; its goal is not looked at.
+        snapshot : MapSnapshot
+            The map to search on.
+        goal : (2,)
+            Where the trajectory has to end, in the map's frame [m].
+        moved : bool
+            Whether ``goal`` stands in for a goal that could not be reached.
+
+        """
         return plan_trajectory(
             snapshot.space,
             self.settings.system,
@@ -256,7 +292,12 @@ class _Job:
 
 
 def _is_still_free(response: PlanResponse, newer: MapSnapshot) -> bool:
-    """Return whether a path found on one map is a path on a newer one."""
+    """
+    Return whether the path of ``response`` is one on the map ``newer`` as well.
+
+    It has to be free there, and a first segment out of a start that is not free has to lead to
+    the same point as it would on ``newer``.
+    """
     if first_blocked_pose(response.free_path, response.frame, newer) is not None:
         return False
     # The way out of a blocked start must still be the shortest one.

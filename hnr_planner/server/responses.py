@@ -1,4 +1,4 @@
-"""Responses to requests for paths and for draws, as data."""
+"""Responses to requests for paths and for draws (random points of the free space), as data."""
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass, field
@@ -20,21 +20,21 @@ from numpy.typing import NDArray
 @dataclass(frozen=True)
 class Response(ABC):
     """
-    How a request ended.
+    How a request ended: the base of the responses for paths and for draws.
 
     Parameters
     ----------
     outcome : Outcome
-        The name of what happened.
+        The name under which the request ended.
     why : str
-        The same in words, with the values.
+        The outcome in words, with the values that explain it.
     elapsed : float
-        Time from the request to this response [s].
+        Time from the request to this response [s], by ``time.monotonic``.
     tier : str
-        'compiled' when machine code did all of the work, 'interpreted' when some of it was not
-        there yet.
+        'compiled' when machine code did all of the work, 'interpreted' when some of it ran in
+        Python because its machine code was not available.
     snapshot : MapSnapshot, optional
-        The map that the response holds for; None when there was none.
+        The map that the response holds for; None when the request ended before it had a map.
 
     """
 
@@ -46,22 +46,22 @@ class Response(ABC):
 
     @property
     def frame(self) -> str:
-        """Return the map's frame, empty without a map."""
+        """Name of the frame of the map in ``snapshot``; empty without a map."""
         return '' if self.snapshot is None else self.snapshot.frame
 
     @property
     def searched(self) -> bool:
-        """Return whether a path was searched for, found or not."""
+        """Whether a path was searched for, found or not; False for draws."""
         return False
 
     @property
     @abstractmethod
     def algorithm(self) -> str:
-        """Return the name of the planner or walk."""
+        """Name of the planner of a path, or of the random walk of draws."""
 
     @property
     def values(self) -> dict[str, str]:
-        """Return what is published about the request; seconds and metres, NaN where unknown."""
+        """What is published about the request, as text by name; seconds, metres, NaN unknown."""
         return {
             'why': self.why,
             'algorithm': self.algorithm,
@@ -73,26 +73,28 @@ class Response(ABC):
 @dataclass(frozen=True)
 class PlanResponse(Response):
     """
-    How a request for a path ended.
+    How a request for a path ended; points and lengths are in the map's frame [m].
 
     Parameters
     ----------
     request : PlanRequest
-        The request; in the map's frame once something was planned.
+        The request: as it arrived where ``result`` is None, else transformed to the map's frame.
+        Where a leg of a path through several poses fails, the request for that leg.
     result : SearchResult, optional
         What the planner returned; None when nothing was planned.
     poses : (n, 7)
         Poses along the path: x, y, z [m] and the quaternion x, y, z, w; none unless solved.
     trajectory : Trajectory, optional
-        What a robot with inertia does over time.
+        States over time of a robot with inertia; None for other robots, or when none was found.
     clearance : float
         Smallest distance between the path and an obstacle [m]; NaN without a path, or where the
         time limit left no time to measure it.
     escape : float
-        Length of the first segment of the path, where that leads out of a start that is not free
-        [m]; 0 where the start is free.
+        Length [m] of the first segment of the path, where this segment leads out of a start that
+        is not free; 0 where the start is free.
     blocked : PlanarPose, optional
-        Where a path found before is blocked now.
+        The first place where a path is blocked by a map that came after the path was found; None
+        in the response to a request.
 
     """
 
@@ -106,46 +108,46 @@ class PlanResponse(Response):
 
     @property
     def solved(self) -> bool:
-        """Return whether there is a path."""
+        """Whether the outcome is SOLVED: there is a path."""
         return self.outcome is Outcome.SOLVED
 
     @property
     def searched(self) -> bool:
-        """Return whether there was anything to search for, solved or not."""
+        """Whether the planner's result has samples; False when it ended before its search."""
         return self.result is not None and len(self.result.samples) > 0
 
     @property
     def path(self) -> NDArray[np.float64]:
-        """Return the vertices (m, 2) of the path [m]; none unless solved."""
+        """Vertices (m, 2) of the path in the map's frame [m]; none unless solved."""
         if self.solved and self.result is not None:
             return self.result.path
         return np.empty((0, 2))
 
     @property
     def free_path(self) -> NDArray[np.float64]:
-        """Return the vertices of the path without the way out of a start that is not free."""
+        """Vertices (m, 2) [m] of the path from where it is free: without a start that is not."""
         return self.path[1:] if self.escape > 0.0 else self.path
 
     @property
     def goal_orientation(self) -> Quaternion:
-        """Return the orientation requested at the goal, with norm 1."""
+        """Orientation requested at the goal, with norm 1; no rotation where it has none."""
         return normalised(self.request.goal.orientation) or LEVEL
 
     @property
     def offset(self) -> float:
-        """Return the distance from the path's end to the goal [m]; NaN without a path."""
+        """Distance from the last vertex of the path to the goal [m]; NaN without a path."""
         if not self.solved:
             return math.nan
         return float(math.dist(self.path[-1], self.request.goal.point))
 
     @property
     def algorithm(self) -> str:
-        """Return the planner that planned, or else the one requested."""
+        """Name of the planner that planned; that of the request when nothing was planned."""
         return self.request.algorithm if self.result is None else self.result.planner
 
     @property
     def values(self) -> dict[str, str]:
-        """Return what is published about the request; seconds and metres, NaN where unknown."""
+        """What is published about the request, as text by name; seconds, metres, NaN unknown."""
         values = super().values | {
             'clearance': f'{self.clearance:.6g}',
             'offset': f'{self.offset:.6g}',
@@ -174,14 +176,14 @@ class PlanResponse(Response):
 @dataclass(frozen=True)
 class SampleResponse(Response):
     """
-    How a request for draws ended.
+    How a request for draws (random points of the free space) ended.
 
     Parameters
     ----------
     settings : Settings
-        The parameters that said what to draw.
+        The parameters by which the points were drawn.
     draws : FreeSpaceDraws, optional
-        One chain of them; None after a failure.
+        The draws, as a single chain; None after a failure.
 
     """
 
@@ -190,29 +192,34 @@ class SampleResponse(Response):
 
     @property
     def points(self) -> NDArray[np.float64]:
-        """Return the draws (n, 2) [m]; none after a failure."""
+        """Points (n, 2) that were drawn, in the map's frame [m]; none after a failure."""
         return np.empty((0, 2)) if self.draws is None else self.draws.points[0]
 
     @property
     def n_components(self) -> int:
-        """Return how many connected components of the free space the draws lie in."""
+        """Number of connected components of the free space that the draws lie in."""
         return 0 if self.draws is None else len(np.unique(self.draws.components))
 
     @property
     def parents(self) -> NDArray[np.intp]:
-        """Return the index (n,) of the draw that each is one step away from; -1 for none."""
+        """
+        Row (n,) in ``points`` of the draw from which the walk made the step to each draw.
+
+        -1 for the first draw of a component, and for all where ``sample_thin`` is above 1: then
+        draws are several steps apart.
+        """
         if self.draws is None or self.settings.sample_thin > 1:
             return np.full(len(self.points), -1)
         return self.draws.previous[0]
 
     @property
     def algorithm(self) -> str:
-        """Return the walk that the parameters name."""
+        """Name of the random walk: the parameter ``sample_walk``."""
         return self.settings.sample_walk
 
     @property
     def values(self) -> dict[str, str]:
-        """Return what is published about the request; seconds."""
+        """What is published about the request, as text by name; times in seconds."""
         values = super().values
         if self.draws is not None:
             n_steps = (len(self.points) - self.n_components) * self.settings.sample_thin

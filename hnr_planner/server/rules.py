@@ -1,4 +1,4 @@
-"""The rule of a parameter: its meaning, its unit, and the values it takes."""
+"""Rules of parameters: the meaning, the unit and the allowed values of each one."""
 
 import dataclasses
 from dataclasses import dataclass
@@ -8,12 +8,30 @@ from hnr_planner.core.errors import HnrError
 
 
 class SettingsError(HnrError, ValueError):
-    """A parameter was given a value that it cannot have."""
+    """A parameter was given a value that its rule does not allow."""
 
 
 @dataclass(frozen=True)
 class Rule:
-    """Meaning of a parameter, and the values it takes."""
+    """
+    The rule of one parameter.
+
+    Parameters
+    ----------
+    description : str
+        What the parameter means, for people.
+    unit : str
+        Unit of the value; empty for none.
+    lower, upper : float, optional
+        Smallest and largest allowed value; checked only when both are given.
+    choices : tuple of str
+        All allowed values; empty for no such restriction.
+    read_only : bool
+        Whether the value can be set only when the node starts.
+    entries : str
+        Form of each entry of a list, for people; empty for other parameters. Not checked here.
+
+    """
 
     description: str
     unit: str = ''
@@ -24,7 +42,7 @@ class Rule:
     entries: str = ''
 
     def check(self, name: str, value: Any) -> None:
-        """Raise SettingsError, with the value and the rule, when ``value`` breaks this rule."""
+        """Raise SettingsError when ``value`` is not allowed for the parameter ``name``."""
         if self.choices and value not in self.choices:
             names = ', '.join(self.choices)
             raise SettingsError(f'{name} must be one of {names}, got {value!r}')
@@ -36,6 +54,6 @@ class Rule:
 
 
 def setting(default: Any, description: str, unit: str = '', **rule: Any) -> Any:
-    """Return a field of a dataclass that carries its rule."""
+    """Return a dataclass field with ``default``, and with its ``Rule`` as metadata ``rule``."""
     metadata = {'rule': Rule(description, unit, **rule)}
     return dataclasses.field(default=default, metadata=metadata)

@@ -1,4 +1,4 @@
-"""Draws of the free space of the map in use."""
+"""Requests for uniform draws (random points) of all free space of the map in use."""
 
 from dataclasses import dataclass, replace
 import threading
@@ -20,6 +20,9 @@ from hnr_planner.server.waiting import NewestMap, wait_for_map
 def draw(settings: Settings, newest_map: NewestMap, cancel: threading.Event) -> SampleResponse:
     """
     Draw all free space of the newest map uniformly, and return the draws or why there are none.
+
+    The time limit of ``settings`` holds for all of it, by the clock ``working_time``. A refusal
+    is not raised: it becomes the outcome of the response.
 
     Parameters
     ----------
@@ -47,7 +50,7 @@ def draw(settings: Settings, newest_map: NewestMap, cancel: threading.Event) -> 
 
 @dataclass(frozen=True)
 class _Ending:
-    """An event that is set when the request is cancelled, or its time is up."""
+    """Event-like object: set once ``cancel`` is, or ``working_time()`` reaches ``deadline``."""
 
     cancel: threading.Event
     deadline: float
@@ -57,7 +60,7 @@ class _Ending:
 
 
 def _draw(settings: Settings, snapshot: MapSnapshot, ending: _Ending) -> FreeSpaceDraws:
-    """Return the draws, or raise Refusal (BAD_REQUEST, CANCELLED, TIMEOUT)."""
+    """Return draws of ``snapshot``, or raise Refusal (BAD_REQUEST, CANCELLED, TIMEOUT)."""
     try:
         with interruptible(ending.is_set):
             return sample_free_space(snapshot.space, cancel=ending, **settings.sample_arguments)
@@ -76,6 +79,6 @@ def _draw(settings: Settings, snapshot: MapSnapshot, ending: _Ending) -> FreeSpa
 
 
 def _description(settings: Settings) -> str:
-    """Return in words what the settings ask for."""
+    """Return in words how many draws ``settings`` ask for, and how many steps apart if not 1."""
     thin = settings.sample_thin
     return f'{settings.sample_count} draws' + (f', {thin} steps apart' if thin > 1 else '')

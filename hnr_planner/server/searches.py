@@ -1,4 +1,4 @@
-"""The searches that are running; they are admitted while the node is active."""
+"""The register of running searches, which are admitted only while the node is active."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -10,7 +10,11 @@ WHY_DISABLED = 'the node is not active: configure and activate it, or start it w
 
 
 class RunningSearches:
-    """A register of running searches; each one ends once its own event is set."""
+    """
+    A register of running searches, each by the event that cancels it.
+
+    It admits none until ``enable``. Any number of threads may use it at once.
+    """
 
     def __init__(self) -> None:
         self._events: set[threading.Event] = set()
@@ -20,7 +24,12 @@ class RunningSearches:
     @contextmanager
     def one(self, cancel: threading.Event) -> Iterator[None]:
         """
-        Register a search for the length of a ``with`` block; ``cancel`` is the event that ends it.
+        Register a search for the duration of a ``with`` block.
+
+        Parameters
+        ----------
+        cancel : threading.Event
+            The event that the search watches, to end once it is set.
 
         Raises
         ------
@@ -54,12 +63,12 @@ class RunningSearches:
             return len(self._events)
 
     def enable(self) -> None:
-        """Admit searches."""
+        """Admit searches from now on."""
         with self._lock:
             self._enabled = True
 
     def disable(self) -> None:
-        """Admit no more searches, and cancel those that run."""
+        """Admit no searches from now on, and set the events of those that are running."""
         with self._lock:
             self._enabled = False
         self.cancel()

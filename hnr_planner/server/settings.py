@@ -1,8 +1,8 @@
 """
 Parameters of the planning server, each with its meaning, unit, range and default.
 
-``Settings`` is the one table: the node declares its ROS parameters from it, each request is
-planned with a frozen copy of it, and the documented configuration is held to it by a test.
+``Settings`` is the only table of them: the node declares its ROS parameters from it, each request
+is planned with one frozen instance of it, and a test compares the documented configuration to it.
 """
 
 import dataclasses
@@ -23,7 +23,11 @@ SERVED_ALGORITHMS = (*ALGORITHMS, *KINODYNAMIC_PLANNERS)
 
 @dataclass(frozen=True)
 class Settings:
-    """The parameters of the planning server, checked; each request is planned with one copy."""
+    """
+    The parameters of the planning server, frozen.
+
+    Making an instance checks every value, and raises SettingsError for one that is not allowed.
+    """
 
     algorithm: str = setting(
         'auto',
@@ -191,7 +195,12 @@ class Settings:
     )
 
     def __post_init__(self) -> None:
-        """Check every value against its rule."""
+        """
+        Raise SettingsError where a value is not allowed.
+
+        Checks are the rule of each parameter, the values between -1 and 0 of ``pose_spacing`` and
+        ``goal_speed``, and the form of each alias.
+        """
         object.__setattr__(self, 'planner_aliases', tuple(self.planner_aliases))
         for name, rule in RULES.items():
             rule.check(name, getattr(self, name))
@@ -215,17 +224,17 @@ class Settings:
 
     @property
     def aliases(self) -> dict[str, str]:
-        """Return the algorithm that each alias stands for; an empty entry is none."""
+        """The algorithm of each alias, by its name; empty entries of the parameter are skipped."""
         return dict(alias.split(':', 1) for alias in self.planner_aliases if alias)
 
     @property
     def patience(self) -> float:
-        """Return how long a request waits for the first map [s]."""
+        """Longest wait [s] of a request for the first map: no more than ``time_limit``."""
         return min(self.map_wait, self.time_limit)
 
     @property
     def space_arguments(self) -> dict[str, Any]:
-        """Return the arguments by which a map becomes a space."""
+        """Arguments of ``GridSpace.from_occupancy`` besides the map itself, by name."""
         return {
             'robot_radius': self.robot_radius,
             'unknown': self.unknown,
@@ -234,13 +243,24 @@ class Settings:
 
     @property
     def system(self) -> DoubleIntegrator:
-        """Return the robot with inertia."""
+        """The robot with inertia: its motion in the plane, with bounded acceleration and speed."""
         return DoubleIntegrator(
             dim=2, max_acceleration=self.max_acceleration, max_speed=self.max_speed
         )
 
     def trajectory_arguments(self, algorithm: str, *, goal_is_moved: bool) -> dict[str, Any]:
-        """Return the arguments of ``plan_trajectory`` but for the time that is left."""
+        """
+        Return the arguments of ``plan_trajectory`` that the parameters decide, by name.
+
+        Parameters
+        ----------
+        algorithm : str
+            Name of a kinodynamic planner.
+        goal_is_moved : bool
+            Whether the search is for a point near a goal that could not be reached: then the goal
+            radius is 0 for a planner that reaches its goal exactly (``samples_goal`` is False).
+
+        """
         # A planner that draws states never draws the goal itself, nor one at rest.
         samples_goal = KINODYNAMIC_PLANNERS[algorithm].samples_goal
         unbounded = self.goal_speed < 0.0 or (self.goal_speed == 0.0 and samples_goal)
@@ -257,12 +277,12 @@ class Settings:
 
     @property
     def plan_arguments(self) -> dict[str, Any]:
-        """Return the arguments of ``plan`` but for the time that is left."""
+        """Arguments of ``plan`` that the parameters alone decide, by name."""
         return {**self._search_arguments, 'start_escape': self.escape_radius}
 
     @property
     def _search_arguments(self) -> dict[str, Any]:
-        """Return the arguments that ``plan`` and ``plan_trajectory`` share."""
+        """Arguments that ``plan`` and ``plan_trajectory`` share, by name."""
         return {
             'goal_radius': self.goal_radius,
             'max_iterations': self.max_iterations or None,
@@ -273,7 +293,7 @@ class Settings:
 
     @property
     def sample_arguments(self) -> dict[str, Any]:
-        """Return the arguments of ``sample_free_space``."""
+        """Arguments of ``sample_free_space`` that the parameters decide, by name."""
         ball = BallWalk(self.sample_radius or None)
         return {
             'n_draws': self.sample_count,

@@ -1,4 +1,4 @@
-"""Shapes that show a search to a person: what is drawn, and where."""
+"""Shapes that show a search to people: points, lines and balls in the map's frame."""
 
 import enum
 from typing import NamedTuple
@@ -9,12 +9,17 @@ from hnr_planner.server.subsample import subsample_tree
 import numpy as np
 from numpy.typing import NDArray
 
-#: Points in one shape: more takes longer to draw than it helps to see.
+#: Most points in one shape: more take longer to draw, and do not show more to the eye.
 MOST_POINTS = 10_000
 
 
 class Kind(enum.Enum):
-    """How the points of a shape are drawn."""
+    """
+    How the points of a shape are drawn.
+
+    POINTS: a dot each. PAIRS: a segment from the first to the second, third to fourth, and so on.
+    LINE: a polyline through all. BALL: a ball around the only point.
+    """
 
     POINTS = enum.auto()
     PAIRS = enum.auto()
@@ -24,17 +29,18 @@ class Kind(enum.Enum):
 
 class Shape(NamedTuple):
     """
-    A named shape.
+    A named shape to draw.
 
     Attributes
     ----------
     name : str
+        What the shape shows: 'samples', 'tree', 'path', 'start' or 'goal'.
     kind : Kind
-        ``PAIRS`` draws a segment for each two points.
+        How the points are drawn.
     size : float
-        Width of a line or point, diameter of a ball [m].
+        Width of a line or dot, or diameter of a ball [m].
     points : (n, 2)
-        In the map's frame [m].
+        Points in the map's frame [m]; for ``PAIRS`` an even number, for ``BALL`` one.
 
     """
 
@@ -45,7 +51,12 @@ class Shape(NamedTuple):
 
 
 def search_shapes(response: PlanResponse) -> list[Shape]:
-    """Return samples, tree, path, start and goal of a solved request; none after a failure."""
+    """
+    Return the shapes of samples, tree, path, start and goal of a solved request.
+
+    None after a failure. Samples, edges and path vertices are thinned to ``MOST_POINTS`` points
+    in each shape.
+    """
     if not response.solved or response.result is None or response.snapshot is None:
         return []
     cell = response.snapshot.occupancy.resolution
@@ -58,7 +69,7 @@ def search_shapes(response: PlanResponse) -> list[Shape]:
 
 
 def _result_shapes(result: SearchResult, cell: float) -> list[Shape]:
-    """Return the samples, the edges between them and the path."""
+    """Return shapes of the samples, the tree edges and the path; ``cell`` [m] sets their size."""
     samples, parents = result.samples, result.parents
     dots = subsample_tree(parents, MOST_POINTS)
     # An edge has two points.

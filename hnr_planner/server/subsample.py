@@ -1,4 +1,4 @@
-"""A part of a search tree that is small enough to be shown."""
+"""Parts of search trees, with a bounded number of samples, small enough to be shown."""
 
 from typing import NamedTuple
 
@@ -7,7 +7,17 @@ from numpy.typing import NDArray
 
 
 class TreeSubsample(NamedTuple):
-    """Rows (n,) of the samples that are kept, ascending, and each one's parent among the kept."""
+    """
+    A part of a search tree that contains the parent of each of its samples.
+
+    Parameters
+    ----------
+    rows : (n,) int
+        Rows of the kept samples among all samples of the search, ascending.
+    parents : (n,) int
+        Index in ``rows`` of the parent of each kept sample; -1 for a root.
+
+    """
 
     rows: NDArray[np.intp]
     parents: NDArray[np.int32]
@@ -15,10 +25,11 @@ class TreeSubsample(NamedTuple):
 
 def subsample_tree(parents: NDArray[np.integer], limit: int) -> TreeSubsample:
     """
-    Return at most ``limit`` samples, every one with all of its ancestors.
+    Return a part of a tree with at most ``limit`` samples, and the ancestors of each of them.
 
-    The branch that ends in the last sample, where a search ends, is kept if it fits; the
-    earliest samples fill what is left.
+    All samples are kept if they are no more than ``limit``. Else the last sample, where a search
+    ends, is kept with its ancestors unless they are more than ``limit``; then the earliest other
+    samples are kept, up to ``limit`` in all.
 
     Parameters
     ----------
@@ -34,7 +45,7 @@ def subsample_tree(parents: NDArray[np.integer], limit: int) -> TreeSubsample:
     branch = _branch(parents, count - 1, limit)
     kept = np.zeros(count, dtype=bool)
     kept[branch] = True
-    # The first rows are closed under ancestors, and so is a branch, and so are both together.
+    # The first rows contain all their ancestors, and so does a branch: so do both together.
     others = np.flatnonzero(~kept)[: limit - len(branch)]
     kept[others] = True
     rows = np.flatnonzero(kept)
@@ -44,7 +55,7 @@ def subsample_tree(parents: NDArray[np.integer], limit: int) -> TreeSubsample:
 
 
 def _branch(parents: NDArray[np.integer], leaf: int, limit: int) -> list[int]:
-    """Return ``leaf`` and its ancestors, or nothing when they are more than ``limit``."""
+    """Return the rows from ``leaf`` up to its root; an empty list if more than ``limit``."""
     branch: list[int] = []
     row = leaf
     while row >= 0:

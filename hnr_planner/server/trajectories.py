@@ -1,4 +1,4 @@
-"""Trajectories of a robot with inertia as paths, and the yaw angles along them."""
+"""Trajectories of a robot with inertia: free polylines near them, and yaws along them."""
 
 from collections.abc import Callable
 
@@ -8,22 +8,22 @@ from hnr_planner.server.poses import MOST_POSES
 import numpy as np
 from numpy.typing import NDArray
 
-#: Speed [m/s] below which a robot has no direction, and keeps the one before.
+#: Speed [m/s], or acceleration [m/s^2], up to which it gives the robot no direction.
 AT_REST = 1e-6
 
-#: How far the path as a polyline may be from the trajectory, in cells of the map.
+#: Largest distance of the polyline from the trajectory, in sides of a cell of the map.
 SAG = 0.1
 
-#: How often a piece is halved, at most, until the segment between its ends is free as well.
+#: Most times that a piece is halved to get segments that are free.
 HALVINGS = 16
 
 
 def yaws_along(trajectory: Trajectory) -> NDArray[np.float64]:
     """
-    Return the yaw (m,) [rad] at each time of a trajectory.
+    Return the yaw (m,) [rad] at each of the m times of a trajectory.
 
-    It is the direction of the velocity; at rest that of the acceleration from there on, or else
-    the one before.
+    It is the direction of the velocity; where the robot is at rest, of the acceleration that
+    begins there; without acceleration, the yaw at the time before. It is 0 until there is one.
     """
     velocities = trajectory.states[:, 2:]
     accelerations = np.vstack([trajectory.controls, np.zeros(2)])
@@ -42,17 +42,20 @@ def trajectory_path(
     """
     Return a free polyline (m, 2) [m] near a trajectory, from its first point to its last.
 
-    Its vertices lie on the trajectory, one at least at the end of each step, so many that it is
-    within ``SAG`` of the trajectory as far as ``MOST_POSES`` allow that.
+    Its vertices lie on the trajectory, one at the end of each step of constant acceleration and
+    more between, so that the polyline is within ``SAG`` cells of the trajectory; where that would
+    need more than ``MOST_POSES`` vertices, it may be further away. A piece whose segment is not
+    free is halved, ``HALVINGS`` times at most: a segment that is not free even then stays.
+    Vertices at the place of the vertex before them are left out.
 
     Parameters
     ----------
     trajectory : Trajectory
-        What the robot does.
+        States of the robot over time.
     space : GridSpace
-        Where the polyline has to be free.
+        Space in which the polyline has to be free.
     check : callable
-        Called again and again; what it raises ends the work.
+        Called for each blocked piece; an exception that it raises ends the work.
 
     """
     times, shortest = _vertex_times(trajectory, space)
@@ -63,7 +66,7 @@ def trajectory_path(
         k = first + blocked
         begin, end = times[k], times[k + 1]
         if end - begin <= shortest[k]:
-            first = k + 1  # as near to the trajectory as numbers allow
+            first = k + 1  # halved often enough: the segment stays as it is
         else:
             middle = (begin + end) / 2.0
             times = np.insert(times, k + 1, middle)
@@ -82,13 +85,15 @@ def _vertex_times(
     trajectory: Trajectory, space: GridSpace
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """
-    Return the times (n,) [s] of the vertices, and how short (n - 1,) [s] a piece may become.
+    Return the times (n,) [s] of the vertices, and the shortest durations (n - 1,) [s] of pieces.
 
-    Each step is cut into equal pieces, one at least.
+    Each step of the trajectory is cut into pieces of equal duration, at least one. A piece is not
+    halved any more once it is as short as the shortest duration given for it. Times count from
+    the same zero as those of the trajectory.
     """
     durations = np.diff(trajectory.times)
     accelerations = np.hypot(*trajectory.controls.T)
-    # A chord of a parabola over a time t is at most a t^2 / 8 from it.
+    # A parabola of acceleration a is at most a t^2 / 8 away from its chord over a time t.
     pieces = durations * np.sqrt(accelerations / (8.0 * SAG * space.scale))
     if np.maximum(1.0, np.ceil(pieces)).sum() > MOST_POSES:
         # Rounding up adds one piece to each step at most.

@@ -1,4 +1,4 @@
-"""Waiting for the first map: a request that comes before it is not refused at once."""
+"""Waiting for the first map, so that a request that comes before a map is not refused at once."""
 
 from collections.abc import Callable
 import threading
@@ -9,28 +9,28 @@ from hnr_planner.server.outcomes import Outcome, Refusal
 
 NewestMap = Callable[[], MapSnapshot]
 
-#: Seconds between looks for a map; a cancellation ends the wait at once.
+#: Time [s] between two looks for a map; a cancellation does not wait for the next look.
 LOOK_EVERY = 0.01
 
 
 def wait_for_map(newest_map: NewestMap, patience: float, cancel: threading.Event) -> MapSnapshot:
     """
-    Return the map in use, as soon as there is one.
+    Return the map in use, after waiting for it while there is none.
 
     Parameters
     ----------
     newest_map : callable
         Returns the map in use, or raises Refusal.
     patience : float
-        Longest wait [s].
+        Longest wait [s], by ``time.monotonic``; with 0 there is one look for a map.
     cancel : threading.Event
         Ends the wait when it is set.
 
     Raises
     ------
     Refusal
-        NO_MAP or MAP_NOT_READY when none came in time; CANCELLED; whatever else ``newest_map``
-        refuses for.
+        NO_MAP or MAP_NOT_READY when no map came in time; CANCELLED when ``cancel`` was set during
+        the wait; any other refusal of ``newest_map``, at once.
 
     """
     deadline = time.monotonic() + patience

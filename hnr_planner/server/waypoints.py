@@ -1,4 +1,8 @@
-"""A path through several poses: one search for each leg, joined to one result."""
+"""
+Paths through several poses, joined from the results of their legs.
+
+A leg is the search from one pose to the next.
+"""
 
 from collections import Counter
 from collections.abc import Sequence
@@ -11,11 +15,14 @@ import numpy as np
 
 def joined(results: Sequence[PlanResult]) -> PlanResult:
     """
-    Return the results of solved legs as one; each leg begins where the one before it ended.
+    Return the results of solved legs as one result; a single one is returned as it is.
 
-    Path and samples follow each other, with parents that refer to the rows as they are then.
-    Lengths, lower bounds, times, iterations and counts are summed; the planners of all legs are
-    named. The seed is that of the first leg, since all had the same or none.
+    Each leg has to begin where the leg before it ended: that point is in the path once. Paths and
+    samples are concatenated in the order of the legs, and parents are renumbered to the rows of
+    the concatenated samples (-1 stays). Lengths, lower bounds, times, iterations and counts are
+    summed; the planners of all legs are named, each once. ``cut_by_time`` is true when it is for
+    any leg, the goal offset is that of the last leg, and there is no first solution. What is not
+    named here, such as the seed, is that of the first leg.
     """
     first, *others = results
     if not others:

@@ -1,4 +1,4 @@
-"""The node's health, as diagnostic viewers show it, once a second on ``/diagnostics``."""
+"""The health of the node, published once a second on ``/diagnostics`` for diagnostic viewers."""
 
 from collections.abc import Callable
 
@@ -12,22 +12,23 @@ from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
 from rclpy.clock import Clock, ClockType
 from rclpy.node import Node
 
-#: Seconds from one message to the next, by the steady clock: a simulation that stands is seen.
+#: Time [s] from one message to the next, by the steady clock: messages come even while simulated
+#: time stands still.
 PERIOD = 1.0
 
 
 class Health:
     """
-    Publishes whether the node can plan, or why not, and what it has done so far.
+    Publishes whether the node can plan, or why not, with statistics of requests and kernels.
 
     Parameters
     ----------
     node : Node
-        The node that the health is of.
+        The node whose health is published.
     find_map_input : callable
-        Returns the input of maps, or raises Refusal.
+        Returns the input of maps, or raises Refusal when the node is not configured.
     server : RequestServer
-        Counts the requests.
+        The server that counts the requests, and knows whether they are admitted.
 
     """
 
@@ -57,12 +58,12 @@ class Health:
         self._publisher.publish(health_message(ready, name, state, values, stamp))
 
     def _map_values(self) -> dict[str, str]:
-        """Return size, frame and age of the map in use, or raise Refusal."""
+        """Return a description of the map in use and its age [s], or raise Refusal without one."""
         map_input = self._find_map_input()
         return {'map': str(map_input.newest().occupancy), 'map_age': f'{map_input.age:.1f}'}
 
     def _request_values(self) -> dict[str, str]:
-        """Return how many requests there were, how they ended, and how long they took."""
+        """Return the numbers of all, running and ended requests, and the times [s] of searches."""
         summary = self._server.statistics.summary()
         return {
             'requests': str(summary.requests),
@@ -73,7 +74,7 @@ class Health:
 
 
 def _compilation_values() -> dict[str, str]:
-    """Return which tier serves, and how far compilation in the background is."""
+    """Return the tier (compiled or interpreted) of kernels, and the progress of compilation."""
     progress = status()
     return {
         'tier': progress.tier,

@@ -1,7 +1,7 @@
 """
 Two actions and a service of Nav2's planner server, where ``nav2_msgs`` is installed.
 
-Each action has one goal at a time, as in Nav2: a new one takes the place of the one before.
+Each action has one goal at a time, as in Nav2: a new goal ends the search for the goal before.
 """
 
 from collections.abc import Callable, Sequence
@@ -37,10 +37,10 @@ except ImportError:  # a ROS from wheels has none
 else:
     HAVE_NAV2 = True
 
-#: How long [s] a result waits to be fetched, as in Nav2: a path is large.
+#: Time [s] for which a result is kept for its client, as in Nav2; no longer, as paths are large.
 RESULTS_KEPT = 10
 
-#: How long [s] rclpy may take to enter the cancellation that it has announced.
+#: Longest wait [s] for rclpy to mark a goal as cancelled after our callback has accepted that.
 LONGEST_CHANGE = 1.0
 
 
@@ -51,15 +51,15 @@ class Nav2Server:
     Parameters
     ----------
     node : Node
-        Offers them.
+        The node that offers the actions and the service.
     server : RequestServer
-        Plans.
+        The server that plans for the goals.
     settings : callable
         Returns the parameters in force.
     newest_map : callable
         Returns the map in use, or raises Refusal.
     to_frame : callable
-        Transforms a pose into a frame, or raises Refusal.
+        Transforms a pose into the frame whose name it is given, or raises Refusal (BAD_FRAME).
 
     """
 
@@ -87,7 +87,11 @@ class Nav2Server:
     def _judge(
         self, request: 'IsPathValid.Request', response: 'IsPathValid.Response'
     ) -> 'IsPathValid.Response':
-        """Check a path on the newest map, from where the robot is; the log has the reason."""
+        """
+        Judge a path on the newest map, from the pose nearest to the robot on.
+
+        Without a map the path is not valid. Why a path is not valid is logged as a warning.
+        """
         response.is_valid = False
         try:
             snapshot = self._newest_map()
@@ -104,7 +108,7 @@ class Nav2Server:
         return response
 
     def _find_robot(self, frame: str) -> Pose | None:
-        """Return where the robot is in a frame; None where no transform says so."""
+        """Return the pose of the robot in ``frame``; None where no transform gives it."""
         try:
             return self._to_frame(robot_pose(self._settings()), frame)
         except Refusal:
@@ -112,7 +116,12 @@ class Nav2Server:
 
 
 class _Goal:
-    """A goal under way; its search ends when ``cancel`` is set, for one of two reasons."""
+    """
+    A goal that is being planned for.
+
+    Its search ends when ``cancel`` is set: by its client (then ``cancelled`` is true), or by a
+    newer goal (then ``preempted`` is).
+    """
 
     def __init__(self) -> None:
         self.cancel = threading.Event()
@@ -122,20 +131,20 @@ class _Goal:
 
 class _Action:
     """
-    One of the two actions.
+    The server of one of the two actions.
 
     Parameters
     ----------
     node : Node
-        Offers it.
+        The node that offers the action.
     kind : type
-        Its type, of ``nav2_msgs``.
+        Type of the action, of ``nav2_msgs``.
     name : str
-        Its name.
+        Name of the action.
     poses_of : callable
-        Returns the poses of a goal.
+        Returns the poses to pass, and the last one to end at, of a goal message.
     server : RequestServer
-        Plans.
+        The server that plans for the goals.
     settings : callable
         Returns the parameters in force.
 
@@ -169,7 +178,7 @@ class _Action:
         )
 
     def _begin(self, handle: ServerGoalHandle) -> None:
-        """Begin a goal; one that is under way ends for it."""
+        """Begin to plan for a new goal, and end the search for any goal before it."""
         with self._one_at_a_time:
             for other in self._goals.values():
                 other.preempted = True
@@ -178,7 +187,7 @@ class _Action:
         handle.execute()
 
     def _cancel(self, handle: ServerGoalHandle) -> CancelResponse:
-        """End the search for a goal."""
+        """End the search for a goal and accept that; reject it if the search has ended already."""
         with self._one_at_a_time:
             goal = self._goals.get(_key(handle))
             if goal is None:
@@ -188,7 +197,7 @@ class _Action:
             return CancelResponse.ACCEPT
 
     def _execute(self, handle: ServerGoalHandle) -> Any:
-        """Plan for a goal, bring it to its end and return its result."""
+        """Plan for a goal, mark it as cancelled, succeeded or aborted, and return its result."""
         goal = self._goals[_key(handle)]
         handle.publish_feedback(self._kind.Feedback())
         response, header = self._server.plan(
@@ -208,13 +217,17 @@ class _Action:
         return self._result(response, header, goal.preempted)
 
     def _request(self, goal: Any) -> PlanRequest:
-        """Return the request that a goal stands for."""
+        """Return the request for a path that a goal message stands for."""
         start = pose_from_message(goal.start) if goal.use_start else None
         poses = [pose_from_message(pose) for pose in self._poses_of(goal)]
         return goal_request(start, poses, goal.planner_id, self._settings())
 
     def _result(self, response: PlanResponse, header: Header, preempted: bool) -> Any:
-        """Return the result of a goal."""
+        """
+        Return the result message: path, time, error code, and for a failure the reason.
+
+        The reason is a newer goal where ``preempted`` is true.
+        """
         path = path_message(response.poses, header)
         result = self._kind.Result(path=path, planning_time=_duration(response.elapsed))
         result.error_code = getattr(result, error_name(response))
@@ -229,12 +242,16 @@ def _key(handle: ServerGoalHandle) -> bytes:
 
 
 def _wait_for_cancellation(handle: ServerGoalHandle) -> None:
-    """Wait until rclpy counts a goal as cancelled: it asks us before it does."""
+    """
+    Wait until rclpy marks a goal as cancelled, ``LONGEST_CHANGE`` at most.
+
+    It does so only after our callback ``_cancel`` has accepted the cancellation.
+    """
     deadline = time.monotonic() + LONGEST_CHANGE
     while not handle.is_cancel_requested and time.monotonic() < deadline:
         time.sleep(1e-3)
 
 
 def _duration(seconds: float) -> Duration:
-    """Return a length of time [s] as a message."""
+    """Return a duration [s] as a message, rounded to nanoseconds."""
     return RclpyDuration(nanoseconds=round(1e9 * seconds)).to_msg()

@@ -1,4 +1,4 @@
-"""What is published about each request, besides its outcome."""
+"""Publications: the messages about each request besides its outcome, and its log line."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Iterator
@@ -17,7 +17,7 @@ from std_msgs.msg import Header
 from trajectory_msgs.msg import MultiDOFJointTrajectory
 from visualization_msgs.msg import MarkerArray
 
-#: Topics of publications, besides the outcome, and their types.
+#: Names below the node's of the topics of publications, besides the outcome, and their types.
 TOPICS = {
     'path': Path,
     'trajectory': MultiDOFJointTrajectory,
@@ -25,25 +25,25 @@ TOPICS = {
     'markers': MarkerArray,
 }
 
-#: Topics, each with a message or its serialised form.
+#: Pairs of a topic of ``TOPICS`` and a message for it, as an object or serialised.
 Messages = Iterator[tuple[str, Any]]
 
 
 @dataclass(frozen=True, eq=False)
 class Publication(ABC):
     """
-    What is published about one request.
+    All that is published and logged about one request.
 
     Parameters
     ----------
     caller : str
         Service, action or topic that the request came by.
     response : Response
-        How it ended.
+        How the request ended.
     header : Header
-        Header of all messages; the publisher sets its stamp.
+        Header of all messages; the publisher sets its stamp before they are made.
     log : LogEntry
-        The line for the log.
+        The line on the log about the request.
 
     """
 
@@ -54,22 +54,22 @@ class Publication(ABC):
 
     @abstractmethod
     def messages(self) -> Messages:
-        """Yield what was requested."""
+        """Yield the messages with what was requested, which are always published."""
 
     def pictures(self) -> Messages:
-        """Yield what is for people to look at, and may be left out in a hurry."""
+        """Yield messages for people to look at, which are left out in a backlog or at the end."""
         yield from ()
 
 
 @dataclass(frozen=True, eq=False)
 class PlanPublication(Publication):
     """
-    What is published about a request for a path.
+    All that is published and logged about a request for a path.
 
     Parameters
     ----------
     samples_max : int
-        Most samples to publish.
+        Most samples of the search to publish.
 
     """
 
@@ -77,22 +77,22 @@ class PlanPublication(Publication):
     samples_max: int
 
     def messages(self) -> Messages:
-        """Yield path and trajectory."""
+        """Yield path and trajectory; each is empty where there is none."""
         yield 'path', serialised_path(self.response.poses, self.header)
         yield 'trajectory', serialised_trajectory(self.response.trajectory, self.header)
 
     def pictures(self) -> Messages:
-        """Yield samples and markers."""
+        """Yield the samples of the search, and the markers that show it in RViz."""
         yield 'samples', samples_message(self.response.result, self.samples_max, self.header)
         yield 'markers', serialised_markers(self.response, self.header)
 
 
 @dataclass(frozen=True, eq=False)
 class SamplePublication(Publication):
-    """What is published about a request for draws."""
+    """All that is published and logged about a request for draws of the free space."""
 
     response: SampleResponse
 
     def messages(self) -> Messages:
-        """Yield the draws."""
+        """Yield the draws as a point cloud; it is empty after a failure."""
         yield 'samples', draws_message(self.response, self.header)

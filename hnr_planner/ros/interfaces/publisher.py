@@ -1,4 +1,4 @@
-"""Logs and publishes how each request ended, after its response, in a thread of its own."""
+"""The publisher, whose own thread logs and publishes how each request ended."""
 
 from collections import deque
 from itertools import chain
@@ -17,16 +17,17 @@ from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.time import Time
 
-#: Outcomes that late subscribers get.
+#: Number of the latest outcomes that late subscribers get.
 OUTCOMES_KEPT = 100
 
-#: How long the last message of a topic is given to arrive when the node ends.
+#: Longest wait, for each topic, until subscribers have its last message when the node ends.
 LONGEST_DELIVERY = Duration(seconds=0.2)
 
-#: How long [s] a publication waits for its response to be sent, while later ones are sent already.
+#: Longest time [s] that a publication waits for its response to be sent; the publications after
+#: it wait for it too.
 LONGEST_HOLD = 0.1
 
-#: Publications that may wait; with more, samples and markers (pictures for people) are left out.
+#: With more publications waiting, samples and markers (pictures for people) are left out.
 LONGEST_BACKLOG = 20
 
 
@@ -41,11 +42,11 @@ def latched(depth: int) -> QoSProfile:
 
 class Publisher:
     """
-    Logs and publishes how each request ended, in the order of the stamps.
+    Logs and publishes how each request ended, in the order of the stamps of the messages.
 
-    No response waits for that: ``hand_over`` costs the caller nothing but a place in a queue, and
-    the thread that works it off wakes at ``response_sent``, which has to be called by the thread
-    that handed over once its response is on its way.
+    Responses do not wait for that: ``hand_over`` only puts a publication into a queue. The thread
+    that handed it over has to call ``response_sent`` once its response has been sent; that wakes
+    the publishing thread.
     """
 
     def __init__(self, node: Node) -> None:
@@ -66,31 +67,35 @@ class Publisher:
         self._thread.start()
 
     def hand_over(self, publication: Publication) -> None:
-        """Stamp the header of a publication, and log and publish it soon."""
+        """
+        Stamp the header of a publication and queue it.
+
+        It is logged and published once this thread has called ``response_sent``.
+        """
         self._responding.sent = sent = threading.Event()
         with self._in_order:
             publication.header.stamp = self._stamps.later()
             self._waiting.append((publication, sent))
 
     def response_sent(self) -> None:
-        """Release the publication that this thread has handed over last."""
+        """Release the publication that this thread handed over last; do nothing without one."""
         if self._responding.sent is not None:
             self._responding.sent.set()
             self._responding.sent = None
             self._wake.put(True)
 
     def announce(self, response: PlanResponse, caller: str) -> None:
-        """Publish an outcome that belongs to no request."""
+        """Publish an outcome that belongs to no request, at once, under the name ``caller``."""
         name = f'{self._name}/{caller}'
         with self._in_order:
             self._outcome.publish(outcome_message(response, name, self._stamps.later()))
 
     def leave_out_pictures(self) -> None:
-        """Publish no more samples and markers: the last responses must not wait for them."""
+        """Publish no more pictures (samples and markers), so that the node can end soon."""
         self._pictures = False
 
     def close(self) -> None:
-        """Publish what still waits, and end the thread once subscribers have it."""
+        """Publish what still waits, end the thread, and wait a short time for subscribers."""
         self._wake.put(False)
         self._thread.join()
         for publisher in (self._outcome, *self._publishers.values()):
@@ -131,20 +136,20 @@ class Publisher:
 
 
 class _Responding(threading.local):
-    """The event of the response that a thread is about to send."""
+    """For each thread, the event to set when the response to its last request has been sent."""
 
     def __init__(self) -> None:
         self.sent: threading.Event | None = None
 
 
 class _Stamps:
-    """The time now, but never the same stamp twice and never an earlier one."""
+    """Stamps of the time now, in strictly increasing order even if the clock is set back."""
 
     def __init__(self, clock: Clock) -> None:
         self._clock = clock
         self._last = 0
 
     def later(self) -> TimeMessage:
-        """Return a stamp later than all before."""
+        """Return the time now, or the last stamp plus 1 ns where that is later."""
         self._last = max(self._clock.now().nanoseconds, self._last + 1)
         return Time(nanoseconds=self._last).to_msg()

@@ -1,4 +1,4 @@
-"""The planning server on ROS: responses as messages, and publications about each."""
+"""The planning server with ROS topics: each response is logged and published."""
 
 from collections.abc import Callable
 import threading
@@ -23,14 +23,14 @@ PATH_VALID = 'path_valid'
 
 
 class Planned(NamedTuple):
-    """A response, and the header of its path: stamped, also after a failure."""
+    """A response to a request for a path, and the stamped header of all messages about it."""
 
     response: PlanResponse
     header: Header
 
 
 class Sampled(NamedTuple):
-    """A response, and the stamp of all that is published about it."""
+    """A response to a request for draws, and the stamp of all messages about it."""
 
     response: SampleResponse
     stamp: Time
@@ -43,13 +43,13 @@ class RequestServer:
     Parameters
     ----------
     node : Node
-        Has the log and the topics.
+        The node that logs and publishes.
     settings : callable
         Returns the parameters in force.
     newest_map : callable
         Returns the map in use, or raises Refusal.
     to_frame : callable
-        Transforms a pose into the frame of the map, or raises Refusal.
+        Transforms a pose into the frame whose name it is given, or raises Refusal (BAD_FRAME).
 
     """
 
@@ -75,16 +75,18 @@ class RequestServer:
         self, caller: str, request: PlanRequest, cancel: threading.Event | None = None
     ) -> Planned:
         """
-        Respond to ``request``; all about it is published once ``response_sent`` was called.
+        Plan for ``request``, and return the response and the header of its messages.
+
+        They are published once this thread has called ``response_sent``.
 
         Parameters
         ----------
         caller : str
             Service, action or topic that the request came by.
         request : PlanRequest
-            The request as it arrived.
+            The request as it arrived, not checked yet.
         cancel : threading.Event, optional
-            Ends this search when it is set.
+            Ends the search when it is set.
 
         """
         settings = self._settings()
@@ -103,7 +105,9 @@ class RequestServer:
 
     def sample(self, caller: str) -> Sampled:
         """
-        Draw the free space; all about it is published once ``response_sent`` was called.
+        Draw points of the free space, and return the response and the stamp of its messages.
+
+        They are published once this thread has called ``response_sent``.
 
         Parameters
         ----------
@@ -118,11 +122,11 @@ class RequestServer:
         return Sampled(response, header.stamp)
 
     def response_sent(self) -> None:
-        """Release what is published about the response that this thread got last."""
+        """Release the messages about the response that this thread got last from this server."""
         self._publisher.response_sent()
 
     def start(self) -> None:
-        """Admit searches."""
+        """Admit searches, and log the next success at INFO."""
         self._log.start()
         self.searches.enable()
 
@@ -132,14 +136,14 @@ class RequestServer:
         self.searches.disable()
 
     def close(self) -> None:
-        """Publish what still waits to be published."""
+        """Publish what still waits to be published, and end the publishing thread."""
         self._publisher.close()
 
     def _log_defect(self, traceback: str) -> None:
         self._logger.error(f'a defect of the planner:\n{traceback}')
 
     def _report_path(self, valid: bool, why: str, changed: PlanResponse | None) -> None:
-        """Publish whether the last path is free, and the outcome of a map that blocks it."""
+        """Publish whether the last path is free, and MAP_CHANGED where a newer map blocks it."""
         self._path_valid.publish(Bool(data=valid))
         if changed is not None:
             self._logger.warning(f'{PATH_VALID}: {why}')

@@ -1,4 +1,4 @@
-"""The tools of RViz: "2D Pose Estimate" keeps a start, "2D Goal Pose" plans from it."""
+"""The click tools of RViz: "2D Pose Estimate" keeps a start, "2D Goal Pose" plans from it."""
 
 from collections.abc import Callable
 
@@ -22,13 +22,13 @@ class RvizTools:
     Parameters
     ----------
     node : Node
-        Subscribes.
+        The node that subscribes to the tools.
     server : RequestServer
-        Plans.
+        The server that plans.
     settings : callable
         Returns the parameters in force.
     searches : CallbackGroup
-        Of all callbacks that search.
+        The callback group of all callbacks that search.
 
     """
 
@@ -47,7 +47,7 @@ class RvizTools:
         self._subscriptions: list[Subscription] = []
 
     def listen(self, wanted: bool) -> None:
-        """Subscribe to the tools or not; without subscriptions the start is forgotten."""
+        """Subscribe to the tools if ``wanted``; else unsubscribe and forget the start."""
         if wanted and not self._subscriptions:
             self._subscriptions = [
                 self._node.create_subscription(

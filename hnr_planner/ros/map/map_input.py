@@ -1,4 +1,4 @@
-"""Maps on their way from the topic into use, with a line on the log for each."""
+"""The input of maps: received maps and updates are checked, put into use and logged."""
 
 from collections.abc import Callable
 import time
@@ -17,16 +17,16 @@ from rclpy.node import Node
 
 class MapInput:
     """
-    Subscribes to maps from when it is made until ``close``; ``newest`` is the last good one.
+    Subscribes to maps from construction to ``close``; ``newest`` returns the map in use.
 
     Parameters
     ----------
     node : Node
-        Subscribes, and has the log.
+        The node that subscribes and logs.
     settings : callable
         Returns the parameters in force.
     on_change : callable
-        Called when another map is in use.
+        Called without arguments after another map, or another space of the map, is in use.
 
     """
 
@@ -39,7 +39,7 @@ class MapInput:
         self._store = MapStore(settings())
         self._advice = MapAdvice()
         self._received_at = time.monotonic()
-        # Maps and their updates in the order in which they come.
+        # One group, so that maps and updates are handled one at a time.
         group = MutuallyExclusiveCallbackGroup()
         self._subscription = MapSubscription(
             node,
@@ -56,20 +56,20 @@ class MapInput:
 
     @property
     def topic(self) -> str:
-        """Return the full name of the topic."""
+        """Full name of the topic of maps."""
         return self._subscription.topic
 
     @property
     def age(self) -> float:
-        """Return the time since the last good map came [s]."""
+        """Time [s] since the last good map or update came; since construction before the first."""
         return time.monotonic() - self._received_at
 
     def newest(self) -> MapSnapshot:
-        """Return the map in use, or raise Refusal (NO_MAP, MAP_NOT_READY)."""
+        """Return the map in use, or raise Refusal (NO_MAP, MAP_NOT_READY) when there is none."""
         return self._store.newest()
 
     def use(self, settings: Settings) -> None:
-        """Put changed parameters into use."""
+        """Prepare the map again where changed parameters need it; a failure is logged."""
         began, before = time.monotonic(), self._store.snapshot
         try:
             snapshot = self._store.use(settings)
@@ -80,12 +80,12 @@ class MapInput:
             self._log('prepared again for changed parameters', snapshot, before, began)
 
     def close(self) -> None:
-        """Subscribe no more."""
+        """End the subscriptions to maps and updates."""
         self._subscription.close()
         self._updates.close()
 
     def _receive(self, read_map: Callable[[], OccupancyMap]) -> None:
-        """Put a new map into use; a bad one is refused and the last good one stays."""
+        """Put the map that ``read_map`` returns into use; log a bad map and keep the last one."""
         began, before = time.monotonic(), self._store.snapshot
         try:
             snapshot = self._store.receive(read_map)
@@ -100,7 +100,13 @@ class MapInput:
     def _log(
         self, done: str, snapshot: MapSnapshot, before: MapSnapshot | None, began: float
     ) -> None:
-        """Log another map: at DEBUG where it differs from the last in its cells only."""
+        """
+        Log that a map came into use, with warnings about it, and call ``on_change``.
+
+        The line is at INFO for the first map, or where the description differs from that of the
+        map ``before``; else at DEBUG. ``began`` is when work on the map began, by
+        ``time.monotonic`` [s].
+        """
         taken = time.monotonic() - began
         text = f'map {done} in {taken:.3f} s: {snapshot.occupancy}'
         if before is None or str(before.occupancy) != str(snapshot.occupancy):

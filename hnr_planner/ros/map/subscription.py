@@ -1,4 +1,4 @@
-"""The subscription to ``map``, which adapts to what the publisher offers."""
+"""The subscription to ``map``, whose quality of service adapts to what publishers offer."""
 
 from collections.abc import Callable
 import threading
@@ -18,20 +18,21 @@ from rclpy.qos import (
 )
 from rclpy.subscription import Subscription
 
-#: The relative name of the topic.
+#: The relative name of the topic of maps.
 TOPIC = 'map'
 
-#: Seconds between looks at whether the subscription can be as preferred again.
+#: Time [s], by the steady clock, between checks whether the preferred profile can be used again.
 LOOK_EVERY = 1.0
 
 
 class MapSubscription:
     """
-    One subscription to the map, reliable and, if preferred, transient local.
+    One subscription to the map, by preference reliable and, with ``transient_local``, latched.
 
-    When a publisher offers less, a warning says so, and the subscription is made anew with what is
-    offered; once every publisher offers what was preferred, it goes back to that. All this happens
-    in one callback group, whose callbacks exclude each other.
+    When a publisher offers less, a warning is logged, and a new subscription that accepts it takes
+    the place of the old one; once every publisher offers the preferred profile, that is used
+    again. All this happens in the callback group ``group``, whose callbacks must exclude each
+    other. ``receive`` is called with each map.
     """
 
     def __init__(
@@ -58,18 +59,18 @@ class MapSubscription:
 
     @property
     def topic(self) -> str:
-        """Return the full name of the topic."""
+        """Full name of the topic."""
         return str(self._subscription.topic_name)
 
     def close(self) -> None:
-        """Subscribe no more."""
+        """End the subscription for good."""
         with self._one_at_a_time:
             self._closed = True
             self._node.destroy_timer(self._timer)
             self._node.destroy_subscription(self._subscription)
 
     def _go_back_if_possible(self) -> None:
-        """Subscribe as preferred again when all publishers that are there now allow it."""
+        """Use the preferred profile again if there are publishers, and all of them offer it."""
         if self._subscription.qos_profile.durability == self._preferred.durability and (
             self._subscription.qos_profile.reliability == self._preferred.reliability
         ):
@@ -83,7 +84,7 @@ class MapSubscription:
             self._replace(self._preferred)
 
     def _accept_less(self, event: QoSRequestedIncompatibleQoSInfo) -> None:
-        """Subscribe with what an incompatible publisher offers, and log a warning."""
+        """Subscribe with what an incompatible publisher offers, and warn of what that misses."""
         now = self._subscription.qos_profile
         durability, reliability = now.durability, now.reliability
         if event.last_policy_kind == QoSPolicyKind.DURABILITY:
@@ -136,5 +137,5 @@ def _serves(offered: QoSProfile, requested: QoSProfile) -> bool:
 
 
 def _in_words(profile: QoSProfile) -> str:
-    """Return reliability and durability in words."""
+    """Return the reliability and durability of ``profile`` as text."""
     return f'{profile.reliability.name} and {profile.durability.name}'.lower().replace('_', ' ')

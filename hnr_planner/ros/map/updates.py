@@ -1,4 +1,4 @@
-"""Updates of parts of the map, as costmaps of Nav2 send them, where ``map_msgs`` is installed."""
+"""The subscription to updates of parts of the map, where ``map_msgs`` is installed."""
 
 from collections.abc import Callable
 from typing import Any
@@ -15,29 +15,29 @@ except ImportError:  # a ROS from wheels has none
 else:
     HAVE_MAP_MSGS = True
 
-#: Reliable and volatile: the last update alone, latched, would not hold those before it.
+#: Reliable and volatile: a latched last update would be no use without the updates before it.
 PROFILE = QoSProfile(depth=10)
 
-#: Seconds between looks at whether somebody sends what cannot be read.
+#: Time [s], by the steady clock, between checks whether updates are sent that cannot be read.
 LOOK_EVERY = 1.0
 
 
 class MapUpdates:
     """
-    Subscribes to updates of the map until ``close``.
+    Subscribes to updates of parts of the map, as Nav2's costmaps send them, until ``close``.
 
-    Without ``map_msgs`` it logs one warning when somebody sends updates.
+    Without ``map_msgs`` it only logs one warning, once the topic has a publisher.
 
     Parameters
     ----------
     node : Node
-        Subscribes.
+        The node that subscribes and logs.
     topic : str
-        Full name of the topic.
+        Full name of the topic of updates.
     receive : callable
         Called with each ``map_msgs/OccupancyGridUpdate``.
     group : CallbackGroup
-        The callback group of the map.
+        The callback group of the subscription to maps.
 
     """
 
@@ -59,7 +59,7 @@ class MapUpdates:
             )
 
     def close(self) -> None:
-        """Subscribe no more."""
+        """End the subscription, or the checks for updates that cannot be read."""
         if HAVE_MAP_MSGS:
             self._node.destroy_subscription(self._subscription)
         else:

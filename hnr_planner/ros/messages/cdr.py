@@ -1,9 +1,10 @@
 """
-Serialised messages (CDR) with long arrays in the place of one element each.
+Serialised messages (CDR, the byte format of ROS) with long sequences made from arrays.
 
-A message with a thousand poses costs a thousand Python objects; its serialised form is a few
-constant bytes and an array. Here a message with one or two elements is serialised in the ordinary
-way, and the bytes of the array are spliced in. ``test/ros/test_messages.py`` compares both forms.
+A message object with a thousand poses needs a thousand Python objects; its serialised form is a
+few constant bytes and an array. Here a message with at most two elements is serialised by rclpy,
+and the bytes of the array are spliced in. ``test/ros/test_messages.py`` compares the result to
+the message that rclpy serialises in full.
 """
 
 from collections.abc import Sequence
@@ -14,26 +15,27 @@ from geometry_msgs.msg import Point
 import numpy as np
 from numpy.typing import NDArray
 
-#: A placeholder for an array of points.
+#: The placeholder in a message for a sequence of points: its only element, all NaN.
 ONE_POINT = Point(x=math.nan, y=math.nan, z=math.nan)
 
-#: Found nowhere else in a serialised message: numbers are finite, and strings hold no zeros.
+#: The bytes of the placeholder, which occur nowhere else in a serialised message: other numbers
+#: are finite, and strings hold no zeros.
 _ONE_POINT_BYTES = np.full(3, math.nan).tobytes()
 
 
 def with_points(serialised: bytes, arrays: Sequence[NDArray[np.float64]]) -> bytes:
     """
-    Return a serialised message with arrays of points in the places of its placeholders.
+    Return a serialised message in which arrays of points have replaced the placeholders.
 
     Parameters
     ----------
     serialised : bytes
-        A message in which some sequences of ``geometry_msgs/Point`` are ``[ONE_POINT]``, and in
-        which everything before such a sequence's length ends at a multiple of eight bytes, less
-        four (as in ``Marker``): so nothing lies between the length and the first point. A point
-        has three times eight bytes, so all that follows stays aligned.
+        A message in which some sequences of ``geometry_msgs/Point`` are ``[ONE_POINT]``. The
+        length of such a sequence, four bytes, has to begin four bytes before a multiple of eight
+        (as in ``Marker``): so no padding lies between the length and the first point. A point has
+        three times eight bytes, so all that follows stays aligned.
     arrays : sequence of (n, 2)
-        The points for each placeholder, in their order.
+        Points x, y for each placeholder, in the order of the placeholders; z becomes 0.
 
     """
     pieces, done = [], 0
@@ -49,16 +51,18 @@ def with_points(serialised: bytes, arrays: Sequence[NDArray[np.float64]]) -> byt
 
 def with_elements(short: Sequence[bytes], fields: Sequence[tuple[int, NDArray[Any]]]) -> bytes:
     """
-    Return a serialised message that ends with a long sequence, given three short forms of it.
+    Return a serialised message that ends with a sequence of n elements, given shorter forms.
 
     Parameters
     ----------
     short : three of bytes
-        The message with the first 0, 1 and 2 elements of the sequence, which is its last field. An
-        element has a fixed size, a multiple of eight bytes, from the second one on.
+        The serialised message with the first 0, 1 and 2 elements of the sequence, which is the
+        last field. Each element from the second one on has the same size, a multiple of eight
+        bytes.
     fields : sequence of (int, (n, k))
-        What differs from element to element: where it begins, in bytes before the element's end,
-        and its numbers for each element, in the type of the message.
+        The parts of an element that differ between the n elements: the number of bytes from the
+        beginning of the part to the end of the element, and k numbers for each element, in the
+        number type of the message. All else is as in the second element.
 
     """
     count = len(fields[0][1])
@@ -72,6 +76,6 @@ def with_elements(short: Sequence[bytes], fields: Sequence[tuple[int, NDArray[An
         begin = others.shape[1] - before_end
         end = begin + data.shape[1]
         others[:, begin:end] = data
-    # A message without elements ends with their number, in four bytes.
+    # The message with 0 elements ends with the length of the sequence, in four bytes.
     length = np.uint32(count).tobytes()
     return b''.join([none[:-4], length, one[n_none:], others.tobytes()])

@@ -1,4 +1,4 @@
-"""``nav_msgs/OccupancyGrid`` to and from ``OccupancyMap``, without a loop in Python."""
+"""Conversion of ``nav_msgs/OccupancyGrid`` to and from ``OccupancyMap``, without Python loops."""
 
 import array
 from typing import Any
@@ -15,7 +15,7 @@ from std_msgs.msg import Header
 
 def map_from_message(message: OccupancyGrid) -> OccupancyMap:
     """
-    Return the map in ``message``; its data is a view, not a copy.
+    Return the map in ``message``; its data is a view of the data of ``message``, not a copy.
 
     Raises
     ------
@@ -37,12 +37,13 @@ def map_from_message(message: OccupancyGrid) -> OccupancyMap:
 
 def map_with_update(occupancy: OccupancyMap | None, message: Any) -> OccupancyMap:
     """
-    Return ``occupancy`` with the cells of a ``map_msgs/OccupancyGridUpdate``, as a new map.
+    Return a copy of ``occupancy`` with the cells of a ``map_msgs/OccupancyGridUpdate``.
 
     Raises
     ------
     MapError
-        When there is no map yet, or the update does not fit; the message names the value.
+        When there is no map yet (``occupancy`` is None), or the update does not fit into it by
+        place, size or frame; the message names the value.
 
     """
     return updated_map(
@@ -55,7 +56,7 @@ def map_with_update(occupancy: OccupancyMap | None, message: Any) -> OccupancyMa
 
 
 def message_from_map(occupancy: OccupancyMap, stamp: Time) -> OccupancyGrid:
-    """Return the message for a map."""
+    """Return the message for a map; ``stamp`` is the time of its header and of its loading."""
     rows, cols = occupancy.data.shape
     x, y, yaw = occupancy.origin
     qx, qy, qz, qw = quaternion_of(yaw)

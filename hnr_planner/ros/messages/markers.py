@@ -1,4 +1,4 @@
-"""``visualization_msgs/MarkerArray``: a search as RViz shows it."""
+"""Searches as ``visualization_msgs/MarkerArray``, for RViz."""
 
 from geometry_msgs.msg import Pose, Vector3
 from hnr_planner.ros.messages.cdr import ONE_POINT, with_points
@@ -8,7 +8,7 @@ from rclpy.serialization import serialize_message
 from std_msgs.msg import ColorRGBA, Header
 from visualization_msgs.msg import Marker, MarkerArray
 
-#: The colour of each shape.
+#: The colour of each shape, by the name of the shape.
 COLOURS = {
     'samples': ColorRGBA(r=0.10, g=0.45, b=0.85, a=0.9),
     'tree': ColorRGBA(r=0.45, g=0.65, b=0.90, a=0.5),
@@ -17,7 +17,8 @@ COLOURS = {
     'goal': ColorRGBA(r=0.75, g=0.10, b=0.55, a=1.0),
 }
 
-#: The marker type of each kind of shape, and how many of its three scales are its size.
+#: The marker type of each kind of shape, and how many of the marker's scales x, y, z are set to
+#: the size of the shape; the others are 0.
 TYPES = {
     Kind.POINTS: (Marker.POINTS, 2),
     Kind.PAIRS: (Marker.LINE_LIST, 1),
@@ -28,9 +29,9 @@ TYPES = {
 
 def serialised_markers(response: PlanResponse, header: Header) -> bytes:
     """
-    Return samples, tree, path, start and goal of a solved request, a serialised MarkerArray.
+    Return a serialised MarkerArray of samples, tree, path, start and goal of a solved request.
 
-    The first marker deletes those of the request before; after a failure it stands alone.
+    The first marker deletes the markers of earlier requests; after a failure it is the only one.
     """
     shapes = search_shapes(response)
     clear = Marker(header=header, action=Marker.DELETEALL)
@@ -41,12 +42,12 @@ def serialised_markers(response: PlanResponse, header: Header) -> bytes:
 
 
 def _has_points(shape: Shape) -> bool:
-    """Return whether the marker of a shape has a sequence of points that is not empty."""
+    """Return whether the marker of a shape has any points; that of a ball has a pose instead."""
     return shape.kind is not Kind.BALL and len(shape.points) > 0
 
 
 def _marker(shape: Shape, header: Header) -> Marker:
-    """Return the marker of a shape, with ``ONE_POINT`` in the place of its points."""
+    """Return the marker of a shape, with ``ONE_POINT`` as a placeholder for any points."""
     kind, n_scales = TYPES[shape.kind]
     pose = Pose()
     pose.orientation.w = 1.0

@@ -1,4 +1,4 @@
-"""``diagnostic_msgs/DiagnosticArray``: the outcome of a request, and the health of the node."""
+"""Outcomes of requests and the health of the node as ``diagnostic_msgs/DiagnosticArray``."""
 
 from collections.abc import Mapping
 
@@ -10,7 +10,12 @@ from std_msgs.msg import Header
 
 
 def outcome_message(response: Response, name: str, stamp: Time) -> DiagnosticArray:
-    """Return the outcome of one request; ``name`` is the node and the service that it came by."""
+    """
+    Return the message with the outcome of one request, and its values.
+
+    ``name`` is the full name of the node, and the service, action or topic of the request. The
+    level is OK for a success and WARN for a failure.
+    """
     level = DiagnosticStatus.OK if response.outcome.is_success else DiagnosticStatus.WARN
     return _array(level, name, response.outcome.name, response.values, response.frame, stamp)
 
@@ -18,13 +23,13 @@ def outcome_message(response: Response, name: str, stamp: Time) -> DiagnosticArr
 def health_message(
     healthy: bool, name: str, message: str, values: Mapping[str, str], stamp: Time
 ) -> DiagnosticArray:
-    """Return the health of the node in the form that diagnostic viewers show."""
+    """Return the message with the health of a node: level OK if ``healthy``, else WARN."""
     level = DiagnosticStatus.OK if healthy else DiagnosticStatus.WARN
     return _array(level, name, message, values, '', stamp)
 
 
 def read_outcome(message: DiagnosticArray) -> tuple[Outcome, dict[str, str]]:
-    """Return the name and the values of an outcome that was received."""
+    """Return the outcome and the values, text by name, of a message of ``outcome_message``."""
     status = message.status[0]
     return Outcome[status.message], {item.key: item.value for item in status.values}
 
@@ -37,7 +42,7 @@ def _array(
     frame: str,
     stamp: Time,
 ) -> DiagnosticArray:
-    """Return an array of one status."""
+    """Return a message with a single status, whose text is ``message``."""
     status = DiagnosticStatus(
         level=level,
         name=name,

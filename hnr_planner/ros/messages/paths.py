@@ -1,4 +1,4 @@
-"""``nav_msgs/GetPlan`` and ``nav_msgs/Path``: to requests, and from poses."""
+"""Conversion of ``nav_msgs/GetPlan`` to requests, and of ``nav_msgs/Path`` to and from poses."""
 
 from geometry_msgs.msg import PoseStamped
 from hnr_planner.ros.messages.cdr import with_elements
@@ -13,7 +13,7 @@ from std_msgs.msg import Header
 
 
 def request_from_message(message: GetPlan.Request, algorithm: str) -> PlanRequest:
-    """Return the request in ``message`` as it is; it is checked before it is planned."""
+    """Return the request in ``message``, to be planned with ``algorithm``, without checking it."""
     return PlanRequest(
         start=pose_from_message(message.start),
         goal=pose_from_message(message.goal),
@@ -23,40 +23,45 @@ def request_from_message(message: GetPlan.Request, algorithm: str) -> PlanReques
 
 
 def pose_from_message(message: PoseStamped) -> Pose:
-    """Return the pose in ``message`` as it is."""
+    """Return the pose in ``message`` with its frame and its stamp [ns], without checking it."""
     position, rotation = message.pose.position, message.pose.orientation
     stamp = message.header.stamp
     return Pose(
         position=(position.x, position.y, position.z),
         orientation=(rotation.x, rotation.y, rotation.z, rotation.w),
         frame=message.header.frame_id,
-        # By hand: rclpy's Time refuses a negative one with an exception.
+        # Computed here, since rclpy's Time raises an exception for a negative stamp.
         stamp=stamp.sec * 10**9 + stamp.nanosec,
     )
 
 
 def points_from_path(message: Path) -> NDArray[np.float64]:
-    """Return the positions (n, 2) [m] of the poses in ``message``."""
+    """Return the positions x, y (n, 2) [m] of the poses in ``message``, in the frame they have."""
     positions = [stamped.pose.position for stamped in message.poses]
     return np.array([(position.x, position.y) for position in positions]).reshape(-1, 2)
 
 
 def path_message(rows: NDArray[np.float64], header: Header) -> Path:
-    """Return poses (n, 7) as a message; all share the header, and so get a stamp together."""
+    """
+    Return poses (n, 7) as a path message.
+
+    A row is x, y, z [m] and the quaternion x, y, z, w. The path and all its poses share the object
+    ``header``: a stamp that is set in it later holds for all of them.
+    """
     path = Path(header=header)
     path.poses = [_stamped(row, header) for row in rows.tolist()]
     return path
 
 
 def serialised_path(rows: NDArray[np.float64], header: Header) -> bytes:
-    """Return poses (n, 7) as a message in its serialised form."""
+    """Return the serialised form of ``path_message(rows, header)``, without objects for poses."""
     short = [serialize_message(path_message(rows[:n_poses], header)) for n_poses in range(3)]
-    # A pose ends with its seven numbers.
+    # The last 56 bytes of a pose are its seven numbers.
     return with_elements(short, [(56, rows)])
 
 
 def _stamped(row: list[float], header: Header) -> PoseStamped:
-    """Return the message of one pose; setting its fields is faster than to hand them over."""
+    """Return the message of one pose (7,); setting fields is faster than passing them."""
     stamped = PoseStamped(header=header)
     position, orientation = stamped.pose.position, stamped.pose.orientation
     position.x, position.y, position.z = row[:3]

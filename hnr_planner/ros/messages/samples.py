@@ -1,4 +1,4 @@
-"""``sensor_msgs/PointCloud2`` from the samples of a search, or from draws of the free space."""
+"""Samples of a search, and draws of the free space, as ``sensor_msgs/PointCloud2``."""
 
 import array
 
@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from sensor_msgs.msg import PointCloud2, PointField
 from std_msgs.msg import Header
 
-#: Name, format in memory and type in the message; each has four bytes.
+#: Name, NumPy format and message type of each field of a point; each field has four bytes.
 COLUMNS = (
     ('x', '<f4', PointField.FLOAT32),
     ('y', '<f4', PointField.FLOAT32),
@@ -19,15 +19,17 @@ COLUMNS = (
     ('parent', '<i4', PointField.INT32),
 )
 
-#: A point in memory.
+#: The NumPy type of a point, with all its fields.
 LAYOUT = np.dtype([(name, form) for name, form, _ in COLUMNS])
 
 
 def samples_message(result: SearchResult | None, limit: int, header: Header) -> PointCloud2:
     """
-    Return at most ``limit`` samples; ``parent`` is the ``index`` of the sample it was grown from.
+    Return a point cloud of at most ``limit`` samples of a search, in the map's frame [m].
 
-    A root has parent -1. Without a result the cloud is empty.
+    ``index`` is the number of a point in the cloud; ``parent`` is the ``index`` of the sample from
+    which a sample was grown, -1 for a root. Parents are in the cloud. Without a result the cloud
+    is empty.
     """
     if result is None:
         return _cloud(np.empty((0, 2)), np.empty(0), header)
@@ -36,12 +38,17 @@ def samples_message(result: SearchResult | None, limit: int, header: Header) -> 
 
 
 def draws_message(response: SampleResponse, header: Header) -> PointCloud2:
-    """Return all draws; ``parent`` is the ``index`` of the draw that is one step away, or -1."""
+    """
+    Return a point cloud of all draws, in the map's frame [m].
+
+    ``parent`` is the ``index`` of the draw from which the walk made its step to a draw; -1 for the
+    first draw of a component, and for all when draws are several steps apart.
+    """
     return _cloud(response.points, response.parents, header)
 
 
 def _cloud(samples: NDArray, parents: NDArray, header: Header) -> PointCloud2:
-    """Return samples (n, 2) with their parents (n,)."""
+    """Return the cloud of samples (n, 2) [m]; parents (n,) are rows of ``samples``, or -1."""
     points = np.zeros(len(samples), dtype=LAYOUT)
     points['x'], points['y'] = samples.T
     points['index'] = np.arange(len(points))

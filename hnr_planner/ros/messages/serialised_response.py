@@ -2,9 +2,10 @@
 Responses of ``nav_msgs/GetPlan`` from serialised bytes, without an object for each pose.
 
 rclpy turns a message into its C struct by a function that it finds on the message's class. The
-class here brings a function of its own, which fills the struct from bytes by the
-``rmw_deserialize`` of the middleware: this takes milliseconds for ten thousand poses, and does not
-hold the interpreter lock, which the ordinary way holds ten times as long.
+class of responses here has another such function, which fills the struct from bytes by
+``rmw_deserialize`` of the middleware. This takes milliseconds for ten thousand poses, without the
+interpreter lock; the ordinary way, with an object for each pose, holds that lock ten times as
+long.
 """
 
 import ctypes
@@ -24,10 +25,12 @@ _FromPython = ctypes.PYFUNCTYPE(ctypes.c_bool, ctypes.py_object, ctypes.c_void_p
 
 class PlanResponses:
     """
-    Makes responses from poses; ``why_slow`` is the reason for the ordinary way, else empty.
+    Makes responses from arrays of poses, from serialised bytes where that works.
 
-    It leans on the inside of rclpy. So one small response is made in both ways when this is made,
-    and where they differ the ordinary way is taken.
+    The way from bytes depends on internals of rclpy. So at construction a small response is made
+    both from bytes and with an object for each pose (the ordinary way). Where they differ, or the
+    first cannot be made, all responses are made in the ordinary way, and ``why_slow`` is the
+    reason; else ``why_slow`` is empty.
     """
 
     def __init__(self) -> None:
@@ -39,7 +42,7 @@ class PlanResponses:
             self.why_slow = f'{type(error).__name__}: {error}'
 
     def make(self, poses: NDArray[np.float64], header: Header) -> GetPlan.Response:
-        """Return the response with poses (n, 7): x, y, z and the quaternion x, y, z, w."""
+        """Return the response with poses (n, 7): x, y, z [m] and the quaternion x, y, z, w."""
         if self.why_slow:
             return GetPlan.Response(plan=path_message(poses, header))
         response = self._kind()
@@ -48,7 +51,7 @@ class PlanResponses:
         return response
 
     def _check(self) -> None:
-        """Raise ValueError when a small response is not what the ordinary way makes of it."""
+        """Raise ValueError when a small response from bytes differs from the ordinary one."""
         poses, header = np.arange(21.0).reshape(3, 7), Header(frame_id='map')
         ordinary = GetPlan.Response(plan=path_message(poses, header))
         made = deserialize_message(serialize_message(self.make(poses, header)), GetPlan.Response)
@@ -57,7 +60,7 @@ class PlanResponses:
 
 
 class _Allocator(ctypes.Structure):
-    """``rcutils_allocator_t``."""
+    """The C struct ``rcutils_allocator_t``."""
 
     _fields_ = [
         (name, ctypes.c_void_p)
@@ -66,7 +69,7 @@ class _Allocator(ctypes.Structure):
 
 
 class _SerialisedMessage(ctypes.Structure):
-    """``rcutils_uint8_array_t``."""
+    """The C struct ``rcutils_uint8_array_t``, the type of a serialised message."""
 
     _fields_ = [
         ('buffer', ctypes.c_char_p),
@@ -104,7 +107,12 @@ def _serialised_kind() -> type[GetPlan.Response]:
 
 
 def _middleware() -> ctypes.CDLL:
-    """Return the library with ``rmw_deserialize``: ROS from wheels has the second one only."""
+    """
+    Return the library with ``rmw_deserialize``.
+
+    It is ``librmw_implementation.so``, or, in a ROS from wheels, which lacks that, the library of
+    the middleware itself.
+    """
     try:
         return ctypes.CDLL('librmw_implementation.so')
     except OSError:
@@ -112,7 +120,7 @@ def _middleware() -> ctypes.CDLL:
 
 
 def _pointer(capsule: object) -> int:
-    """Return the pointer in a capsule."""
+    """Return the address that a Python capsule (an object for a C pointer) holds."""
     name = ctypes.pythonapi.PyCapsule_GetName
     name.argtypes, name.restype = [ctypes.py_object], ctypes.c_char_p
     get = ctypes.pythonapi.PyCapsule_GetPointer
@@ -122,7 +130,7 @@ def _pointer(capsule: object) -> int:
 
 
 def _capsule(pointer: ctypes.c_void_p) -> object:
-    """Return a capsule with a pointer."""
+    """Return a Python capsule, without a name, that holds ``pointer`` but does not own it."""
     new = ctypes.pythonapi.PyCapsule_New
     new.argtypes = [ctypes.c_void_p, ctypes.c_char_p, ctypes.c_void_p]
     new.restype = ctypes.py_object

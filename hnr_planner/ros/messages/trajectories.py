@@ -1,4 +1,4 @@
-"""``trajectory_msgs/MultiDOFJointTrajectory``: what a robot with inertia does over time."""
+"""Trajectories of robots with inertia as ``trajectory_msgs/MultiDOFJointTrajectory``."""
 
 from typing import Any, NamedTuple
 
@@ -17,7 +17,19 @@ Floats = NDArray[np.float64]
 
 
 class _Columns(NamedTuple):
-    """Points of a trajectory as the message has them."""
+    """
+    The n points of a trajectory, as arrays in the order of the message's fields.
+
+    Parameters
+    ----------
+    transforms : (n, 7)
+        Position x, y, z [m] and quaternion x, y, z, w.
+    velocities, accelerations : (n, 6)
+        Linear x, y, z [m/s, m/s^2], then angular x, y, z, which are 0.
+    times : (n, 2)
+        Time from the start: whole seconds, and nanoseconds.
+
+    """
 
     transforms: Floats
     velocities: Floats
@@ -27,15 +39,15 @@ class _Columns(NamedTuple):
 
 def serialised_trajectory(trajectory: Trajectory | None, header: Header) -> bytes:
     """
-    Return a trajectory as a message in its serialised form; without one it has no points.
+    Return a trajectory as a serialised message; without a trajectory it has no points.
 
-    It has a point for each time at which the acceleration changes, with the acceleration from
-    there on: in between positions are quadratic, so that a cubic through positions and velocities
-    is exact.
+    The message has a point for each time at which the acceleration changes, with the acceleration
+    that begins there, and one for the end, with 0. Between points, positions are quadratic in
+    time, so that a cubic through positions and velocities is exact.
     """
     columns = _columns(trajectory)
     short = [serialize_message(_message(columns, n, header)) for n in range(3)]
-    # A point ends with the time, before it three sequences of one element, each after its length.
+    # A point is three sequences of one element, each after its length, and then the time.
     fields: list[tuple[int, NDArray[Any]]] = [
         (176, columns.transforms),
         (112, columns.velocities),
@@ -46,7 +58,7 @@ def serialised_trajectory(trajectory: Trajectory | None, header: Header) -> byte
 
 
 def _columns(trajectory: Trajectory | None) -> _Columns:
-    """Return the points of a trajectory; times are seconds and nanoseconds (n, 2)."""
+    """Return the points of a trajectory as arrays; they are empty for None."""
     n_points = 0 if trajectory is None else len(trajectory.times)
     transforms, velocities, accelerations = (np.zeros((n_points, n)) for n in (7, 6, 6))
     times = np.zeros((n_points, 2), dtype=np.int32)
@@ -62,7 +74,7 @@ def _columns(trajectory: Trajectory | None) -> _Columns:
 
 
 def _message(columns: _Columns, n_points: int, header: Header) -> MultiDOFJointTrajectory:
-    """Return the message of the first points."""
+    """Return the message object with the first ``n_points`` points, or all if there are fewer."""
     rows = zip(*(column[:n_points].tolist() for column in columns), strict=True)
     return MultiDOFJointTrajectory(
         header=header, joint_names=['base'], points=[_point(*row) for row in rows]

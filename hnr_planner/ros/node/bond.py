@@ -1,4 +1,8 @@
-"""The bond by which Nav2's lifecycle manager sees that a node lives; it needs ``bondpy``."""
+"""
+The bond: a heartbeat by which Nav2's lifecycle manager sees that a node lives.
+
+It needs the package ``bondpy``; without it there is no bond.
+"""
 
 from rclpy.duration import Duration
 from rclpy.node import Node
@@ -10,18 +14,19 @@ except ImportError:  # a ROS from wheels has none
 else:
     HAVE_BOND = True
 
-#: The relative name of the topic.
+#: The relative name of the topic of heartbeats.
 TOPIC = 'bond'
 
-#: Seconds, as the manager has them by default.
+#: Times [s] between heartbeats, and without one until the bond counts as broken: the defaults of
+#: the lifecycle manager.
 HEARTBEAT_PERIOD, HEARTBEAT_TIMEOUT = 0.1, 4.0
 
-#: How long the end of the bond is published again and again.
+#: Longest wait for the other side to confirm that the bond is broken.
 LONGEST_FAREWELL = Duration(seconds=0.2)
 
 
 class NodeBond:
-    """A bond under the name of the node, kept from when it is made until ``close``."""
+    """A bond under the name of a node, from construction to ``close``; none without bondpy."""
 
     def __init__(self, node: Node) -> None:
         if not HAVE_BOND:
@@ -37,11 +42,11 @@ class NodeBond:
         self._bond.start()
 
     def close(self) -> None:
-        """Break the bond, and inform the other side."""
+        """Break the bond, inform the other side, and wait ``LONGEST_FAREWELL`` at most for it."""
         if HAVE_BOND:
             self._bond.break_bond()
             self._bond.wait_until_broken(LONGEST_FAREWELL)
-            # By itself it would leave the node with a subscription that is no more.
+            # ``shutdown`` alone would leave an unusable subscription in the node.
             self._node.destroy_subscription(self._bond.sub)
             self._bond.shutdown()
             self._node.destroy_publisher(self._bond.pub)

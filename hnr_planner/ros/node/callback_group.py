@@ -1,4 +1,4 @@
-"""A callback group that keeps some of the executor's threads for others."""
+"""A callback group that leaves some of the executor's threads to other groups."""
 
 from collections.abc import Callable
 import threading
@@ -9,11 +9,11 @@ from rclpy.callback_groups import CallbackGroup
 
 class BoundedCallbackGroup(CallbackGroup):
     """
-    Let at most ``limit`` callbacks of this group run at once; more wait for their turn.
+    A group of which at most ``limit`` callbacks run at once; others wait for their turn.
 
-    Searches are in one such group, smaller than the number of threads: so there is always a
-    thread for cancelling them. ``afterwards`` is called when a callback of a service has ended and
-    its response has been sent, in the same thread.
+    Searches are in one such group, with a limit below the number of threads: so there is always a
+    thread for cancelling them. ``afterwards`` is called without arguments when a callback of the
+    group has ended, in the same thread; the response of a service has been sent by then.
     """
 
     def __init__(self, limit: int, afterwards: Callable[[], None]) -> None:
@@ -23,11 +23,11 @@ class BoundedCallbackGroup(CallbackGroup):
         self._lock = threading.Lock()
 
     def can_execute(self, entity: Any) -> bool:
-        """Return whether there is room."""
+        """Return whether fewer than ``limit`` callbacks of the group are running."""
         return self._free > 0
 
     def beginning_execution(self, entity: Any) -> bool:
-        """Take a place if there is one, and return whether there was."""
+        """Count one more running callback if the limit allows it, and return whether it does."""
         with self._lock:
             if self._free == 0:
                 return False
@@ -35,7 +35,7 @@ class BoundedCallbackGroup(CallbackGroup):
             return True
 
     def ending_execution(self, entity: Any) -> None:
-        """Give the place back."""
+        """Count one running callback less, and call ``afterwards``."""
         with self._lock:
             self._free += 1
         self._afterwards()

@@ -1,4 +1,4 @@
-"""What ``planner_node --help`` prints."""
+"""The text that ``planner_node --help`` prints."""
 
 from collections.abc import Iterable
 import textwrap
@@ -8,7 +8,7 @@ from hnr_planner.core.trajectories.registry import KINODYNAMIC_ENTRIES
 from hnr_planner.server.rules import Rule
 from hnr_planner.server.settings import DEFAULTS, RULES
 
-#: Characters of a line.
+#: Most characters of a line of the text.
 WIDTH = 99
 
 USAGE = """\
@@ -30,7 +30,7 @@ parameters, with unit and default:
 
 
 def help_text(services: Iterable[str]) -> str:
-    """Return usage, services, algorithms and the table of parameters as text."""
+    """Return the help text: usage, ``services`` by name, algorithms and all parameters."""
     names = ', '.join(f'~/{name}' for name in services)
     algorithms = '\n'.join(
         f'  {entry.name}: {entry.summary}' for entry in (*PLANNERS, *KINODYNAMIC_ENTRIES)
@@ -43,7 +43,7 @@ def help_text(services: Iterable[str]) -> str:
 
 
 def _entry(name: str, rule: Rule) -> str:
-    """Return a parameter with its unit, its default and what it means."""
+    """Return the lines on one parameter: name, unit and default, then its meaning and choices."""
     unit = f' [{rule.unit}]' if rule.unit else ''
     choices = f' One of {", ".join(rule.choices)}.' if rule.choices else ''
     indent = ' ' * 6

@@ -1,10 +1,10 @@
 """
-A lifecycle node whose transitions are methods, with what ``LifecycleNode`` of rclpy leaves open.
+A lifecycle node whose transitions are methods, and which responds to failed transitions too.
 
-A node of this class overrides ``configure``, ``activate``, ``deactivate`` and ``cleanup``; the
-last two also run when they have nothing to undo. A transition that fails is logged with its
-reason and leads back to unconfigured; one that the state does not allow is refused in the service
-response.
+A subclass overrides ``configure``, ``activate``, ``deactivate`` and ``cleanup``; the last two may
+also run when they have nothing to undo. A transition that fails is logged with its traceback and
+leads back to unconfigured. A transition that the state does not allow is logged, and refused in
+the response of the service ``change_state``; rclpy alone would send no response.
 """
 
 from collections.abc import Callable
@@ -15,7 +15,12 @@ from rclpy.lifecycle import LifecycleNode, LifecycleState, TransitionCallbackRet
 
 
 class ManagedNode(LifecycleNode):
-    """A node with the life cycle of ROS 2; ``state`` is the name of its state."""
+    """
+    A node with the life cycle of ROS 2.
+
+    ``state`` is 'unconfigured', 'inactive', 'active' or 'finalized'; it changes once a transition
+    has succeeded.
+    """
 
     def __init__(self, name: str) -> None:
         super().__init__(name)
@@ -23,49 +28,49 @@ class ManagedNode(LifecycleNode):
         self._refuse_in_the_response()
 
     def configure(self) -> None:
-        """Acquire what the node needs: unconfigured to inactive."""
+        """Acquire what the node needs to serve, on the way from unconfigured to inactive."""
 
     def activate(self) -> None:
-        """Begin to serve: inactive to active."""
+        """Begin to serve, on the way from inactive to active."""
 
     def deactivate(self) -> None:
-        """Stop serving: active to inactive."""
+        """Stop serving, on the way from active to inactive, at a shutdown or after a failure."""
 
     def cleanup(self) -> None:
-        """Release what ``configure`` acquired: inactive to unconfigured."""
+        """Release what ``configure`` acquired: at a cleanup, a shutdown or after a failure."""
 
     def destroy_node(self) -> None:
-        """Take the node down from whatever state it is in."""
+        """Shut the node down from any state, unless it is finalized already, and destroy it."""
         if self.state != 'finalized':
             self.trigger_shutdown()
         super().destroy_node()
 
     def on_configure(self, _state: LifecycleState) -> TransitionCallbackReturn:
-        """Run ``configure``."""
+        """Run ``configure``, and return whether the node is inactive then."""
         return self._pass_to('inactive', self.configure)
 
     def on_activate(self, _state: LifecycleState) -> TransitionCallbackReturn:
-        """Run ``activate``."""
+        """Run ``activate``, and return whether the node is active then."""
         return self._pass_to('active', self.activate)
 
     def on_deactivate(self, _state: LifecycleState) -> TransitionCallbackReturn:
-        """Run ``deactivate``."""
+        """Run ``deactivate``, and return whether the node is inactive then."""
         return self._pass_to('inactive', self.deactivate)
 
     def on_cleanup(self, _state: LifecycleState) -> TransitionCallbackReturn:
-        """Run ``cleanup``."""
+        """Run ``cleanup``, and return whether the node is unconfigured then."""
         return self._pass_to('unconfigured', self.cleanup)
 
     def on_shutdown(self, _state: LifecycleState) -> TransitionCallbackReturn:
-        """Undo everything, for ever."""
+        """Run ``deactivate`` and ``cleanup``; the node is finalized then, for good."""
         return self._pass_to('finalized', self.deactivate, self.cleanup)
 
     def on_error(self, _state: LifecycleState) -> TransitionCallbackReturn:
-        """Undo what a failed transition has left."""
+        """Run ``deactivate`` and ``cleanup`` after a failed transition, back to unconfigured."""
         return self._pass_to('unconfigured', self.deactivate, self.cleanup)
 
     def _pass_to(self, state: str, *steps: Callable[[], None]) -> TransitionCallbackReturn:
-        """Take the steps of a transition, and return whether they led to ``state``."""
+        """Run ``steps`` in order; return SUCCESS in the new ``state``, ERROR if a step raises."""
         try:
             for step in steps:
                 step()
@@ -77,7 +82,12 @@ class ManagedNode(LifecycleNode):
         return TransitionCallbackReturn.SUCCESS
 
     def _refuse_in_the_response(self) -> None:
-        """Respond to an impossible transition too: rclpy raises, and its caller would wait."""
+        """
+        Replace the callback of ``change_state`` by one that responds to every request.
+
+        For a transition that the state does not allow, rclpy's own callback raises, so that its
+        caller would wait for ever.
+        """
         service = next(item for item in self.services if item.srv_type is ChangeState)
         change_state = service.callback
 

@@ -1,4 +1,4 @@
-"""The executable ``map_node``: publishes a map file, for those who have no ``map_server``."""
+"""The executable ``map_node``: publishes a map file where Nav2's ``map_server`` is missing."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -30,13 +30,16 @@ PARAMETERS = (
 
 class MapSource(Node):
     """
-    Publishes the map file of the parameter ``yaml_filename``, latched, and serves it.
+    Publishes the map of the file in the parameter ``yaml_filename``, latched, and serves it.
+
+    The topic is ``map``, the service ``~/map``. When a parameter is set, the file is loaded again
+    and published.
 
     Raises
     ------
     MapFileError
-        When the file cannot be used at the start. Later, a file that cannot be used is refused
-        when the parameter is set, and the map that is loaded stays.
+        When no file is named or it cannot be used at the start. Later, a parameter that names
+        such a file is refused, and the map that is loaded stays.
 
     """
 
@@ -54,7 +57,7 @@ class MapSource(Node):
         self.create_service(GetMap, '~/map', self._respond)
 
     def _load(self, changes: dict[str, str]) -> OccupancyGrid:
-        """Return the map for the parameters with ``changes``, or raise MapFileError."""
+        """Return the map for the parameters with ``changes`` made, or raise MapFileError."""
         now = {name: self.get_parameter(name).value for name, _, _ in PARAMETERS}
         wanted = now | changes
         filename = wanted['yaml_filename']
@@ -65,7 +68,7 @@ class MapSource(Node):
         return message_from_map(occupancy, self.get_clock().now().to_msg())
 
     def _read(self, filename: str) -> OccupancyMap:
-        """Return the map of a file, or raise MapFileError; the log has what is warned about."""
+        """Return the map of a file, or raise MapFileError; log what the loader warns about."""
         with warnings.catch_warnings(record=True) as caught:
             warnings.simplefilter('ignore')
             warnings.simplefilter('always', MapFileWarning)
@@ -79,7 +82,7 @@ class MapSource(Node):
         self.get_logger().info(f'ready: the map is published on {self._publisher.topic_name}')
 
     def _check(self, parameters: Sequence[Parameter]) -> SetParametersResult:
-        """Load what the changed parameters name, or refuse them."""
+        """Load the map for the parameters that are being set; refuse them if it cannot be used."""
         changes = _ours(parameters)
         if changes:
             try:
@@ -89,25 +92,25 @@ class MapSource(Node):
         return SetParametersResult(successful=True)
 
     def _accept(self, parameters: Sequence[Parameter]) -> None:
-        """Publish what was loaded for the parameters that were just set."""
+        """Publish the map that ``_check`` loaded for the parameters that were just set."""
         if _ours(parameters):
             self._message = self._next
             self._publish()
 
     def _respond(self, _request: GetMap.Request, response: GetMap.Response) -> GetMap.Response:
-        """Serve the map."""
+        """Return the response with the map that was published last."""
         response.map = self._message
         return response
 
 
 def _ours(parameters: Sequence[Parameter]) -> dict[str, str]:
-    """Return the values of those parameters that decide the map."""
+    """Return the values, by name, of those ``parameters`` that are listed in ``PARAMETERS``."""
     names = {name for name, _, _ in PARAMETERS}
     return {item.name: item.value for item in parameters if item.name in names}
 
 
 def main() -> NoReturn:
-    """Run the map source until a signal comes, and exit."""
+    """Run the map source until SIGINT or SIGTERM, and end the process with its exit code."""
     sys.exit(run(NAME, MapSource, threads=2))
 
 

@@ -1,11 +1,11 @@
-"""Memory that a large map took, given back to the system when a small one comes."""
+"""Return of memory to the operating system when a large map is replaced by a small one."""
 
 import ctypes
 
-#: The parameter of ``mallopt`` that is the threshold, as glibc numbers it.
+#: glibc's number of the ``mallopt`` parameter for the size from which blocks are mapped.
 M_MMAP_THRESHOLD = -3
 
-#: Blocks of so many bytes or more are mapped one by one, and unmapped when they are freed.
+#: Blocks of this size [bytes] or more are mapped one by one, and unmapped when they are freed.
 LARGE_BLOCK = 1 << 20
 
 
@@ -13,9 +13,10 @@ def give_back_large_blocks() -> None:
     """
     Let the C library return each large block to the system when it is freed.
 
-    By itself glibc raises the threshold, up to 32 MiB, to the size of each block that is freed:
-    arrays of a second large map then lie in the heap, which cannot shrink below what is in use
-    behind them. A C library without ``mallopt`` is left as it is.
+    By default glibc raises the size from which blocks are mapped one by one, up to 32 MiB, to
+    that of each such block that is freed: the arrays of a second large map then lie in the heap,
+    which cannot shrink while memory behind them is in use. In a C library without ``mallopt``
+    nothing is changed.
     """
     libc = ctypes.CDLL(None)
     if hasattr(libc, 'mallopt'):

@@ -1,4 +1,4 @@
-"""ROS parameters: declared from the table of ``Settings``, and kept as one frozen copy of it."""
+"""ROS parameters of the node: declared from ``Settings``, and kept as an instance of it."""
 
 from collections.abc import Callable
 import dataclasses
@@ -20,20 +20,22 @@ from rclpy.parameter import Parameter
 
 class Parameters:
     """
-    The node's parameters; ``settings`` is what is in force now.
+    The ROS parameters of a node; ``settings`` holds the values that are in force now.
+
+    A change that breaks a rule is refused, and ``settings`` stays as it is.
 
     Parameters
     ----------
     node : Node
-        The parameters are declared on it.
+        The node on which the parameters are declared.
     on_change : callable
-        Called with the new settings after some were changed, before the caller that changed
-        them gets its response.
+        Called with the new settings after at least one value has changed, before the caller that
+        set the parameters gets its response.
 
     Raises
     ------
     SettingsError
-        When a value that the node was started with breaks its rule.
+        When a value that the node was started with has the wrong type or breaks its rule.
 
     """
 
@@ -57,19 +59,20 @@ class Parameters:
             self._on_change(settings)
 
     def _changed(self, parameters: list[Parameter]) -> Settings:
-        """Return the settings with ``parameters`` applied, or raise SettingsError."""
+        """Return the settings in force with ``parameters`` changed, or raise SettingsError."""
         values = {item.name: item.value for item in parameters if item.name in RULES}
         return dataclasses.replace(self.settings, **values)
 
 
 def warn_of_unknown_parameters(node: Node) -> None:
     """
-    Log a warning for each parameter that the node was started with and has not declared.
+    Log a warning for each parameter that the node was started with but does not declare.
 
-    rclpy ignores such a parameter, of a file or of the command line, without a word.
+    rclpy ignores such a parameter of a file or the command line without a warning. The warning
+    names a declared parameter with a similar name, if there is one.
     """
     declared = list(node.get_parameters_by_prefix(''))
-    # rclpy has no public name for what it was started with.
+    # rclpy has no public name for the parameter values that a node was started with.
     for name in node._parameter_overrides:
         if node.has_parameter(name) or name.startswith('qos_overrides.'):
             continue
@@ -79,7 +82,7 @@ def warn_of_unknown_parameters(node: Node) -> None:
 
 
 def _declare(node: Node, name: str) -> Any:
-    """Declare one parameter and return its value."""
+    """Declare a parameter of ``Settings`` on ``node``; return its start value, or its default."""
     default = getattr(DEFAULTS, name)
     if isinstance(default, tuple):
         default = list(default)
@@ -91,7 +94,7 @@ def _declare(node: Node, name: str) -> Any:
 
 
 def _descriptor(rule: Rule, default: bool | int | float | str | list[str]) -> ParameterDescriptor:
-    """Return what ``ros2 param describe`` shows, with the range that rclpy itself checks."""
+    """Return the descriptor of a parameter: its meaning, and the range that rclpy enforces."""
     unit = f' [{rule.unit}]' if rule.unit else ''
     constraints = f'one of: {", ".join(rule.choices)}' if rule.choices else ''
     if rule.entries:

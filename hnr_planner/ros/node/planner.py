@@ -1,4 +1,4 @@
-"""The planning node: its topics, services and parameters, wired to the planning server."""
+"""The planning node: its topics, services and parameters, connected to the planning server."""
 
 from functools import partial
 
@@ -25,16 +25,16 @@ from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.qos import QoSProfile
 from std_srvs.srv import Trigger
 
-#: Requests that run at once; more wait for their turn.
+#: Most requests that run at once; others wait for their turn.
 MOST_SEARCHES = 32
 
-#: Threads for callbacks: searches never take the last ones, those of ~/cancel and diagnostics.
+#: Threads for callbacks: four more than searches can take, for ~/cancel, diagnostics and maps.
 THREADS = MOST_SEARCHES + 4
 
-#: How many requests of a service may wait.
+#: The QoS profile of services: so many requests to one may wait.
 WAITING_REQUESTS = QoSProfile(depth=1000)
 
-#: Services that plan, and the algorithm of each; None is the one of the parameter.
+#: Services that plan, and the algorithm of each; None for that of the parameter ``algorithm``.
 SERVICES = {
     'plan': None,
     'plan_hit_and_run': 'hit_and_run',
@@ -45,11 +45,12 @@ SERVICES = {
 
 class PlannerNode(ManagedNode):
     """
-    Plans and draws on the newest map on request, and publishes every sampled point.
+    Plans paths and draws points of the free space on request, on the newest map.
 
-    Its services and topics are there in every state, so that a caller never waits for nothing:
-    until the node is active, requests end as NOT_ACTIVE. Maps are received from when it is
-    configured.
+    It publishes each outcome, path and set of samples, with ``samples_max`` samples of a search at
+    most. Its services and topics are there in every state, so that each caller gets a response:
+    while the node is not active, requests end as NOT_ACTIVE. Maps are received from ``configure``
+    to ``cleanup``.
     """
 
     def __init__(self) -> None:
@@ -99,30 +100,30 @@ class PlannerNode(ManagedNode):
 
     @property
     def settings(self) -> Settings:
-        """Return the parameters in force."""
+        """The parameters in force."""
         return self._parameters_in_force.settings
 
     def configure(self) -> None:
-        """Subscribe to maps and transforms."""
+        """Begin to subscribe to maps and transforms."""
         self._transforms = Transforms(self)
         self._map_input = MapInput(self, lambda: self.settings, self._server.path_monitor.check)
         self.get_logger().info(f'maps come from {self._map_input.topic}')
 
     def activate(self) -> None:
-        """Admit requests."""
+        """Admit requests; begin a bond with Nav2's manager unless ``autostart`` is set."""
         self._server.start()
         if not self.settings.autostart:
             self._bond = NodeBond(self)
 
     def deactivate(self) -> None:
-        """End all searches and refuse requests as NOT_ACTIVE."""
+        """End all running searches, refuse requests as NOT_ACTIVE afterwards, and end the bond."""
         self._server.searches.disable()
         if self._bond is not None:
             self._bond.close()
             self._bond = None
 
     def cleanup(self) -> None:
-        """Subscribe to maps and transforms no more, and forget what came."""
+        """End the subscriptions to maps and transforms, and forget the map and the last path."""
         for source in (self._map_input, self._transforms):
             if source is not None:
                 source.close()
@@ -130,27 +131,27 @@ class PlannerNode(ManagedNode):
         self._server.path_monitor.forget()
 
     def end_searches(self) -> None:
-        """End running searches, and those that may still come."""
+        """End running searches, and admit no more, before the process ends."""
         self._server.end()
 
     def destroy_node(self) -> None:
-        """Publish what still waits, then take the node down."""
+        """Publish what still waits to be published, then destroy the node."""
         self._server.close()
         super().destroy_node()
 
     def _find_map_input(self) -> MapInput:
-        """Return the input of maps, or raise Refusal."""
+        """Return the input of maps, or raise Refusal (NOT_ACTIVE) when there is none."""
         map_input = self._map_input
         if map_input is None:
             raise Refusal(Outcome.NOT_ACTIVE, 'the node is not configured')
         return map_input
 
     def _newest_map(self) -> MapSnapshot:
-        """Return the map in use, or raise Refusal."""
+        """Return the map in use, or raise Refusal (NOT_ACTIVE, NO_MAP, MAP_NOT_READY)."""
         return self._find_map_input().newest()
 
     def _to_frame_of_map(self, pose: Pose, frame: str) -> Pose:
-        """Return ``pose`` in the frame of the map, or raise Refusal (BAD_FRAME)."""
+        """Return ``pose`` transformed to the map's ``frame``, or raise Refusal (BAD_FRAME)."""
         transforms, settings = self._transforms, self.settings
         if transforms is None:
             return only_same_frame(pose, frame)
@@ -158,7 +159,7 @@ class PlannerNode(ManagedNode):
         return transforms.transform(pose, frame, patience)
 
     def _use_settings(self, settings: Settings) -> None:
-        """Put changed parameters into use."""
+        """Put changed parameters into use: the click tools of RViz, and the space of the map."""
         self._rviz_tools.listen(settings.rviz_clicks)
         if self._map_input is not None:
             self._map_input.use(settings)
@@ -170,13 +171,13 @@ class PlannerNode(ManagedNode):
         message: GetPlan.Request,
         _response: GetPlan.Response,
     ) -> GetPlan.Response:
-        """Respond to one request for a path."""
+        """Return the response to a request for a path; ``algorithm`` None is the parameter's."""
         request = request_from_message(message, algorithm or self.settings.algorithm)
         planned = self._server.plan(service, request)
         return self._responses.make(planned.response.poses, planned.header)
 
     def _sample(self, _request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
-        """Draw the free space; the response has the outcome and the stamp of the draws."""
+        """Draw points of the free space; return the outcome, and the stamp of their message."""
         sampled, stamp = self._server.sample('sample')
         response.success = sampled.outcome.is_success
         response.message = (
@@ -185,7 +186,7 @@ class PlannerNode(ManagedNode):
         return response
 
     def _cancel(self, _request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
-        """End all running searches."""
+        """Cancel all running searches, and return how many there were."""
         count = self._server.searches.cancel()
         response.success = True
         response.message = f'{count} running search{"" if count == 1 else "es"} cancelled'

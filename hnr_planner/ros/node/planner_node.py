@@ -1,4 +1,4 @@
-"""The executable ``planner_node``: serve at once, and compile in the background."""
+"""The executable ``planner_node``: serves at once, and compiles kernels in the background."""
 
 from collections.abc import Sequence
 import os
@@ -25,7 +25,12 @@ NAME = 'hnr_planner'
 
 
 def main(arguments: Sequence[str] | None = None) -> NoReturn:
-    """Run the planning node until a signal comes, and exit; with ``--help`` print how to."""
+    """
+    Run the planning node until SIGINT or SIGTERM, and end the process with its exit code.
+
+    Where ``-h`` or ``--help`` is among ``arguments`` (by default those of the command line), print
+    the help text and exit.
+    """
     if {'-h', '--help'} & set(sys.argv[1:] if arguments is None else arguments):
         print(help_text(SERVICES))
         sys.exit(0)
@@ -61,7 +66,7 @@ def _process_age() -> float:
 
 
 def _prepare(logger: RcutilsLogger) -> None:
-    """Load what requests need; what is not in the cache is compiled while they run."""
+    """Forward the package's log to ``logger``, and begin to load or compile the kernels."""
     logger.info('preparing')
     forward_package_log(logger)
     compile_in_background()

@@ -1,10 +1,10 @@
 """
-The process of a node, the same for every node here: prepare, make, spin, end cleanly.
+The process of a node: prepare, make the node, spin it, and end cleanly on a signal.
 
-Executors do not notice a signal before their next wake-up, and rclpy's own handlers shut the
-context down under running callbacks. Here a signal only wakes the main thread: callers that wait
-get their responses, what waits to be published is published, and then everything is taken down.
-SIGINT and SIGTERM end the process with exit code 0, however often and whenever they come.
+Executors do not notice a signal before their next wake-up, and rclpy's own signal handlers shut
+the context down while callbacks run. Here a signal only wakes the main thread: callers that wait
+get their responses, what waits to be published is published, and then the node is destroyed.
+SIGINT and SIGTERM, once or repeated, end the process with exit code 0 unless something failed.
 """
 
 from collections.abc import Callable
@@ -46,16 +46,17 @@ def run(
     Parameters
     ----------
     name : str
-        Name for the log before there is a node.
+        Name of the logger for the time before there is a node.
     make_node : callable
-        Makes the node; an HnrError or an error of rclpy that it raises, such as a parameter of
-        the wrong type, is one line on the log and exit code 1.
+        Returns the node. An HnrError or an error of rclpy that it raises, such as a parameter of
+        the wrong type, is logged on one line, and the exit code is 1.
     threads : int
-        Threads that run callbacks.
+        Number of threads that run callbacks.
     prepare : callable, optional
-        Work before ROS is started; a signal ends it at once.
+        Called with the logger before ROS is started; a signal ends the process at once meanwhile.
     before_shutdown : callable, optional
-        Ends the node's running callbacks.
+        Called with the node after a signal or a failed callback: it makes running callbacks end,
+        which are then waited for.
 
     """
     give_back_large_blocks()
@@ -95,7 +96,11 @@ def _spin(
     stop: '_StopSignal',
     before_shutdown: Callable[[NodeType], None] | None,
 ) -> int:
-    """Spin in a thread of its own until a signal comes or a callback fails."""
+    """
+    Spin the node in another thread until a signal comes or a callback raises.
+
+    Return the exit code: 1 when a callback raised, else 0.
+    """
     executor = _Executor(threads)
     executor.add_node(node)
     failures: list[Exception] = []
@@ -127,16 +132,21 @@ def _spin(
 
 
 class _Executor(MultiThreadedExecutor):
-    """An executor that ends in order: no callback is left that would miss what it needs."""
+    """An executor that can wait for its running callbacks before it shuts down."""
 
     def finish(self) -> None:
-        """Wait for the callbacks that have begun, then end."""
+        """Wait until all callbacks that have begun are done, then shut the executor down."""
         self._executor.shutdown(wait=True)
         self.shutdown()
 
 
 class _StopSignal:
-    """SIGINT and SIGTERM: they end the process at once until an owner waits for them."""
+    """
+    The handling of SIGINT and SIGTERM.
+
+    They end the process at once until ``wait_for_owner`` is called; from then on they only wake
+    the thread in ``wait``.
+    """
 
     def __init__(self) -> None:
         self._reader, self._writer = os.pipe()
@@ -145,7 +155,7 @@ class _StopSignal:
             signal.signal(number, _leave_at_once)
 
     def wait_for_owner(self) -> None:
-        """From now on, only remember a signal until ``wait``."""
+        """Remember signals for ``wait`` from now on, in the place of ending the process."""
         # Python runs a handler only when the main thread is back from C; the pipe is written to
         # by the C handler itself, in whatever thread the signal comes.
         signal.set_wakeup_fd(self._writer, warn_on_full_buffer=False)
@@ -153,20 +163,20 @@ class _StopSignal:
             signal.signal(number, _remembered_by_pipe)
 
     def request(self) -> None:
-        """Wake the owner without a signal."""
+        """Make ``wait`` return as if a signal had come."""
         os.write(self._writer, b'\0')
 
     def wait(self) -> None:
-        """Return once a signal has come, or came since ``wait_for_owner``."""
+        """Return after the first signal or ``request`` since ``wait_for_owner``; wait for one."""
         os.read(self._reader, 1)
 
 
 def _leave_at_once(_number: int, _frame: FrameType | None) -> None:
-    """End the process: nothing has been started that would have to be ended in order."""
+    """End the process with exit code 0: no node has been made that would need a shutdown."""
     sys.stdout.flush()
     sys.stderr.flush()
     os._exit(0)
 
 
 def _remembered_by_pipe(_number: int, _frame: FrameType | None) -> None:
-    """Do nothing: the wake-up pipe has the signal already."""
+    """Do nothing: the C handler has written the signal to the wake-up pipe already."""

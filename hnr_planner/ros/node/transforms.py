@@ -1,4 +1,4 @@
-"""Poses from their own frames to that of the map, by ``tf2`` where that is installed."""
+"""Transforms of poses from their own frames to the map's, by ``tf2`` where it is installed."""
 
 from dataclasses import replace
 
@@ -20,9 +20,9 @@ else:
 
 class Transforms:
     """
-    Subscribes to transforms from when it is made until ``close``.
+    Transforms poses; subscribes to transforms from construction to ``close``.
 
-    Without ``tf2`` no pose can be in another frame than the map's.
+    Without ``tf2`` there are no transforms: a pose in another frame than the map's is refused.
     """
 
     def __init__(self, node: Node) -> None:
@@ -31,18 +31,22 @@ class Transforms:
             self._listener = TransformListener(self._buffer, node)
 
     def close(self) -> None:
-        """Subscribe no more."""
+        """End the subscription to transforms."""
         if HAVE_TF:
             self._listener.unregister()
 
     def transform(self, pose: Pose, frame: str, patience: float) -> Pose:
         """
-        Return ``pose`` in ``frame``; a transform may take ``patience`` [s] to come.
+        Return ``pose`` transformed to ``frame``, with its orientation at norm 1.
+
+        A pose whose frame is empty or ``frame`` keeps its numbers. The transform is that at the
+        stamp of the pose; wait up to ``patience`` [s] for it.
 
         Raises
         ------
         Refusal
-            BAD_FRAME, with words that follow on the name of the pose.
+            BAD_FRAME when no transform came; its words continue a sentence that begins with the
+            name of the pose.
 
         """
         if not HAVE_TF or pose.frame in ('', frame):
