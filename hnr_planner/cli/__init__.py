@@ -1,1 +1,1 @@
-"""The command line: one file for each command, thin over the core, the maps and the drawing."""
+"""The command line: one file for each command, which calls the core, the maps and the drawing."""

@@ -1,7 +1,8 @@
 """
 Arguments that several commands share, their types, and errors of one line.
 
-Importing this module is cheap; the map and the planner are imported when a map is opened.
+Importing this module is fast: the modules of maps and planners, with NumPy, are imported only when
+a map is opened.
 """
 
 from __future__ import annotations
@@ -31,7 +32,7 @@ KINDS = {float: 'number', int: 'whole number'}
 
 
 class Listed(Protocol):
-    """An entry of a registry."""
+    """Entry of a registry, such as a planner, that a help text lists."""
 
     @property
     def name(self) -> str:
@@ -39,18 +40,26 @@ class Listed(Protocol):
 
     @property
     def summary(self) -> str:
-        """Return one line about it."""
+        """Return one line that describes the entry."""
 
 
 class BadInputError(ValueError):
-    """An argument is well-formed but cannot be used; the message names it and the reason."""
+    """
+    Error that a well-formed argument cannot be used, or that a command lacks what it needs.
+
+    The message names the argument or the command, and the reason.
+    """
 
 
 class CommandParser(argparse.ArgumentParser):
     """An argument parser that reports an error in one line and keeps the layout of its epilog."""
 
     def __init__(self, **settings: object) -> None:
-        """Make a parser as ``argparse.ArgumentParser`` does; it takes no abbreviated options."""
+        """
+        Make a parser with the settings of ``argparse.ArgumentParser``.
+
+        ``allow_abbrev`` is always False: options cannot be abbreviated.
+        """
         settings.setdefault('formatter_class', argparse.RawDescriptionHelpFormatter)
         settings['allow_abbrev'] = False
         super().__init__(**settings)  # type: ignore[arg-type]
@@ -59,7 +68,7 @@ class CommandParser(argparse.ArgumentParser):
         self._points: list[str] = []
 
     def add_point(self, option: str, *, required: bool = False, text: str) -> None:
-        """Add an option that takes a point X Y [m], with its text in ``--help``."""
+        """Add an option that takes a point X Y [m]; ``text`` describes it in ``--help``."""
         self._points.append(option)
         self.add_argument(
             option, type=number, nargs=2, metavar=('X', 'Y'), required=required, help=text
@@ -68,7 +77,11 @@ class CommandParser(argparse.ArgumentParser):
     def parse_known_args(  # type: ignore[override]
         self, args: Sequence[str] | None = None, namespace: Any = None
     ) -> tuple[Any, list[str]]:
-        """Check the points before argparse does, whose message for them has no example."""
+        """
+        Parse the arguments, after a check that each option for a point is followed by two numbers.
+
+        The check comes first because its message has an example, which that of argparse has not.
+        """
         words = sys.argv[1:] if args is None else list(args)
         for place, word in enumerate(words, start=1):
             option, equals, first = word.partition('=')
@@ -77,7 +90,12 @@ class CommandParser(argparse.ArgumentParser):
         return super().parse_known_args(words, namespace)
 
     def _check_point(self, option: str, words: Sequence[str]) -> None:
-        """Report an option that is followed by other than two separate numbers."""
+        """
+        Report an error where other than two separate numbers follow an option for a point.
+
+        ``words`` are the words after the option. Nothing is done where the first of them holds no
+        number: argparse reports that.
+        """
         given = list(takewhile(_numbers_in, words))
         if not given:
             return  # argparse names the word that is no number
@@ -93,13 +111,17 @@ class CommandParser(argparse.ArgumentParser):
             )
 
     def error(self, message: str) -> NoReturn:
-        """Print one line and end with exit code 2."""
+        """Print the message as one line on stderr, and raise SystemExit with exit code 2."""
         print(error_line(f'{message} (see {self.prog} --help)'), file=sys.stderr)
         raise SystemExit(BAD_INPUT)
 
 
 def _numbers_in(word: str) -> list[str]:
-    """Return the numbers of a word such as ``.5,.5``; empty when it holds anything else."""
+    """
+    Return the numbers, as text, of a word such as ``.5,.5``.
+
+    The list is empty where the word holds anything but numbers, separators and brackets.
+    """
     parts = [part for part in re.split(r'[,;()\[\]\s]+', word) if part]
     try:
         return parts if [float(part) for part in parts] else []
@@ -139,7 +161,11 @@ def add_command(
 
 
 def listing(entries: Iterable[Listed]) -> str:
-    """Return names and summaries as lines of a help text."""
+    """
+    Return one line for each entry, its name and summary, for a help text of argparse.
+
+    There has to be at least one entry; every ``%`` is doubled, as argparse needs it.
+    """
     entries = list(entries)
     width = max(len(entry.name) for entry in entries)
     lines = (f'  {entry.name:<{width}}  {entry.summary}' for entry in entries)
@@ -147,7 +173,7 @@ def listing(entries: Iterable[Listed]) -> str:
 
 
 def error_line(message: str) -> str:
-    """Return an error message as one line."""
+    """Return an error message as one line that begins with ``error:``."""
     return 'error: ' + ' '.join(message.split())
 
 
@@ -158,7 +184,12 @@ def bounded(
     above: float = -math.inf,
     most: float = math.inf,
 ) -> Callable[[str], Number]:
-    """Return a function that reads a finite number within bounds, for argparse."""
+    """
+    Return a function that converts text to a finite number within bounds, for argparse.
+
+    The number is of the type ``kind``, at least ``least``, greater than ``above`` and at most
+    ``most``; for any other text the function raises ArgumentTypeError.
+    """
 
     def read(text: str) -> Number:
         try:
@@ -186,7 +217,12 @@ count = bounded(int, least=1, most=10**9)
 
 
 def picture(text: str) -> Path:
-    """Return the path of a picture in an existing folder, for argparse."""
+    """
+    Return the path of a picture to write, for argparse.
+
+    ArgumentTypeError is raised where its folder does not exist, it is a folder itself, or its name
+    ends in none of ``PICTURES``.
+    """
     file = output_file(text)
     if file.suffix.lower() not in PICTURES:
         raise argparse.ArgumentTypeError(f'{text!r} does not end in one of {", ".join(PICTURES)}')
@@ -194,7 +230,12 @@ def picture(text: str) -> Path:
 
 
 def page(text: str) -> Path:
-    """Return the path of an HTML page in an existing folder, for argparse."""
+    """
+    Return the path of an HTML page to write, for argparse.
+
+    ArgumentTypeError is raised where its folder does not exist, it is a folder itself, or its name
+    ends in none of ``PAGES``.
+    """
     file = output_file(text)
     if file.suffix.lower() not in PAGES:
         raise argparse.ArgumentTypeError(f'{text!r} does not end in one of {", ".join(PAGES)}')
@@ -202,7 +243,11 @@ def page(text: str) -> Path:
 
 
 def output_file(text: str) -> Path:
-    """Return the path of a file in an existing folder, for argparse."""
+    """
+    Return the path of a file to write, for argparse.
+
+    ArgumentTypeError is raised where its folder does not exist, or it is a folder itself.
+    """
     file = Path(text)
     if not file.parent.is_dir():
         raise argparse.ArgumentTypeError(f'there is no folder {str(file.parent)!r}')
@@ -212,7 +257,7 @@ def output_file(text: str) -> Path:
 
 
 def add_map_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the map, the robot's radius and the meaning of unknown cells."""
+    """Add the arguments MAP, ``--robot-radius`` and ``--unknown`` to a command's parser."""
     parser.add_argument(
         'map',
         metavar='MAP',
@@ -235,7 +280,12 @@ def add_map_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def open_map(arguments: argparse.Namespace) -> tuple[OccupancyMap, GridSpace]:
-    """Return the map that the arguments name, and the free space of the robot on it."""
+    """
+    Return the map that the arguments name, and the free space of the robot on it.
+
+    ``arguments`` has what ``add_map_arguments`` declares. MapFileError is raised where the map
+    cannot be read.
+    """
     from hnr_planner.core import GridSpace
     from hnr_planner.maps import load_map
 
@@ -252,12 +302,14 @@ def open_map(arguments: argparse.Namespace) -> tuple[OccupancyMap, GridSpace]:
 
 def keep_map_files(map_file: str | Path, *outputs: Path | None) -> None:
     """
-    Refuse to overwrite a file of the map: the image of ``office.yaml`` is often ``office.png``.
+    Refuse outputs that would overwrite a file of the map.
+
+    The image of ``office.yaml``, for example, is often ``office.png``. An output may be None.
 
     Raises
     ------
     BadInputError
-        When an output is the map file or its image.
+        When an output is the map file, or the image that it names.
 
     """
     from hnr_planner.maps import is_moving_ai

@@ -1,4 +1,4 @@
-"""The command ``compile``: all machine code now, for installers and images."""
+"""The command ``compile``: compile all machine code now, for installers and images."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import time
 
 from hnr_planner.cli.arguments import add_command, BadInputError
 
-#: Time between two lines of progress where it goes to a file [s].
+#: Least time between two lines of progress where stdout is no terminal [s].
 INTERVAL = 10.0
 EPILOG = """\
 example:
@@ -40,7 +40,12 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Compile, print the progress, and return the exit code."""
+    """
+    Compile every kernel that is not in the cache folder yet, and return the exit code.
+
+    The progress is printed. BadInputError is raised where compilation is switched off, or where
+    the cache folder cannot be written.
+    """
     from hnr_planner.core.kernels.cache_folder import cache_folder
     from hnr_planner.core.kernels.modes import Mode, mode
     from hnr_planner.core.warming import compile_all
@@ -66,7 +71,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def note_if_interpreted() -> None:
-    """Print a line on stderr where machine code was missing and has not been compiled yet."""
+    """Print a note on stderr where kernels that this process needed are not compiled yet."""
     compilation = sys.modules.get('hnr_planner.core.kernels.compilation')
     if compilation is not None and compilation.status().pending:
         print(
@@ -77,13 +82,18 @@ def note_if_interpreted() -> None:
 
 
 def _is_temporary(folder: Path) -> bool:
-    """Return whether a cache folder is the temporary one of this process."""
+    """Return whether a cache folder lies in the temporary folder that this process has made."""
     home = folder.parents[1]
     return home.parent == Path(gettempdir()) and home.name.startswith('hnr_planner_')
 
 
 class Progress:
-    """Progress on stdout: one line that is overwritten, or in a file a line now and then."""
+    """
+    Display of the progress of compilation on stdout.
+
+    On a terminal it is one line that is overwritten; elsewhere it is a new line when a kernel is
+    done at least ``INTERVAL`` seconds after the line before.
+    """
 
     def __init__(self) -> None:
         self.n_total = 0
@@ -91,7 +101,11 @@ class Progress:
         self._shown = time.monotonic()
 
     def show(self, n_done: int, n_total: int, name: str) -> None:
-        """Show how many kernels are done, and the name of the last one."""
+        """
+        Show that ``n_done`` of ``n_total`` kernels are done, ``name`` being the last of them.
+
+        The name is shown on a terminal only.
+        """
         self.n_total = n_total
         if self._is_terminal:
             print(f'\r\033[K{n_done} of {n_total}  {name}', end='', flush=True)
@@ -100,6 +114,6 @@ class Progress:
             print(f'{n_done} of {n_total}', flush=True)
 
     def end(self) -> None:
-        """Remove the line that is overwritten."""
+        """Remove the line of progress from a terminal; do nothing elsewhere."""
         if self._is_terminal:
             print('\r\033[K', end='', flush=True)

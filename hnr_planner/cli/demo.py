@@ -56,7 +56,7 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Run the demo and return the exit code."""
+    """Run the demo and return the exit code; BadInputError names what is not installed."""
     if find_spec('rclpy') is None:
         raise BadInputError(
             'the demo needs ROS 2 (rclpy): source a ROS 2 Jazzy, or `make install` in a clone'

@@ -69,7 +69,11 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Run the experiments, print their tables, and return the exit code."""
+    """
+    Run the experiments that were named, or else all, and return the exit code.
+
+    The tables of each are printed as it ends.
+    """
     from hnr_planner.core.kernels import modes
 
     require_extra('experiments', 'an experiment')
@@ -81,7 +85,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _conduct(name: str, arguments: argparse.Namespace) -> None:
-    """Run one experiment, print its tables, and show its figure if asked."""
+    """Run one experiment, print its tables, and with ``--show`` open its figure in a browser."""
     from hnr_planner.core.checks import check_choice
     from hnr_planner.experiments.conduct import conduct
 

@@ -1,4 +1,4 @@
-"""Libraries that only some commands need, and that a robot does without."""
+"""Check for libraries that only some commands need, and that need not be on a robot."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ EXTRAS = {'plot': ('matplotlib',), 'experiments': ('joblib', 'matplotlib', 'tqdm
 
 def require_extra(extra: str, what: str) -> None:
     """
-    Refuse a command whose libraries are missing, and name what installs them.
+    Refuse a command where a library of an extra is missing, and name what installs it.
 
     Parameters
     ----------
     extra : str
         One of ``EXTRAS``.
     what : str
-        What needs it, such as an option, for the message.
+        What needs the extra, such as an option, for the message.
 
     Raises
     ------

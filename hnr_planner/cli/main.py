@@ -65,7 +65,7 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def _run(arguments: Namespace) -> int:
-    """Run the command; turn bad input into one line on stderr and its exit code."""
+    """Run the command; turn bad input into one line on stderr, and exit code 2."""
     try:
         with _warnings_as_lines():
             code: int = arguments.run(arguments)
@@ -84,7 +84,11 @@ def _run(arguments: Namespace) -> int:
 
 @contextmanager
 def _warnings_as_lines() -> Iterator[None]:
-    """Print each warning about a map file as one line on stderr, without a line of source."""
+    """
+    Print each ``MapFileWarning`` in the block as one line on stderr, without a line of source.
+
+    All other warnings are shown as outside of the block.
+    """
     from hnr_planner.maps import MapFileWarning  # imports numpy, which --help does without
 
     with warnings.catch_warnings():
@@ -104,7 +108,7 @@ def _warnings_as_lines() -> Iterator[None]:
 
 
 def _program() -> str:
-    """Return the command as it was called: ``hnr-planner`` or ``python -m hnr_planner``."""
+    """Return how the program was called: ``hnr-planner`` or ``python -m hnr_planner``."""
     called = Path(sys.argv[0]).name
     return called if called == 'hnr-planner' else 'python -m hnr_planner'
 

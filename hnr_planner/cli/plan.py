@@ -143,7 +143,11 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Plan, print the result, draw it if asked, and return the exit code."""
+    """
+    Plan, print the result, and return the exit code: 0 for a path, 1 for none.
+
+    The picture and the page are written where ``--plot`` and ``--html`` name files.
+    """
     from hnr_planner.core import plan, PlannerStatus
 
     for option, file in (('--plot', arguments.plot), ('--html', arguments.html)):
@@ -168,7 +172,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _request(arguments: argparse.Namespace) -> dict[str, Any]:
-    """Return the arguments of the function ``plan`` other than the space."""
+    """Return the arguments for the function ``plan``, by name, other than the space."""
     return {
         'start': arguments.start,
         'goal': arguments.goal,
@@ -186,14 +190,22 @@ def _request(arguments: argparse.Namespace) -> dict[str, Any]:
 
 
 def optimize_for(arguments: argparse.Namespace) -> float:
-    """Return how long to look for a shorter path [s]; by default none with ``--no-simplify``."""
+    """
+    Return until how long after the start of planning to look for a shorter path [s].
+
+    It is ``--optimize-for`` where that is given, else 0 with ``--no-simplify``, else 0.02.
+    """
     if arguments.optimize_for is not None:
         return float(arguments.optimize_for)
     return OPTIMIZE_FOR if arguments.simplify else 0.0
 
 
 def _json(result: PlanResult) -> str:
-    """Return the result as one JSON object; the length is null without a path."""
+    """
+    Return the result as one JSON object.
+
+    The length is null where there is no path, and the lower bound where no path exists.
+    """
     return json.dumps(
         {
             'status': result.status.name,
@@ -213,7 +225,7 @@ def _json(result: PlanResult) -> str:
 
 
 def _summary(space: GridSpace, result: PlanResult) -> str:
-    """Return the result as lines to read."""
+    """Return the result as text: status, search, and length and points of every path."""
     lines = [
         f'{result.status.name}: {result.message}',
         f'search      {result.planner}, {result.iterations:,} transitions, '
@@ -230,7 +242,12 @@ def _summary(space: GridSpace, result: PlanResult) -> str:
 
 
 def _points(path: list[list[float]], most: int = 8) -> list[str]:
-    """Return the points of a path as text, at most ``most`` of them, from both ends."""
+    """
+    Return the points of a path as text, one string each.
+
+    Of a path of more than ``most`` points only the first and the last ``most`` / 2 are returned,
+    with ``...`` between them.
+    """
     words = [f'({x:.2f}, {y:.2f})' for x, y in path]
     if len(words) <= most:
         return words
@@ -241,7 +258,7 @@ def _points(path: list[list[float]], most: int = 8) -> list[str]:
 def _draw(
     arguments: argparse.Namespace, occupancy: OccupancyMap, space: GridSpace, result: PlanResult
 ) -> None:
-    """Draw map, samples and paths into the picture."""
+    """Draw map, samples and paths into the file that ``--plot`` names."""
     from hnr_planner import drawing
 
     title = f'{result.planner}: {result.status.name}, {result.iterations:,} transitions'

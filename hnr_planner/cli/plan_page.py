@@ -1,4 +1,4 @@
-"""The page of the command ``plan``: one request, and how each algorithm answers it."""
+"""The HTML page of the command ``plan``: one request, and how each algorithm answers it."""
 
 from __future__ import annotations
 
@@ -22,18 +22,20 @@ def write_plan_page(
     result: PlanResult,
 ) -> None:
     """
-    Write the page: the result of a request, and those of the other algorithms for it.
+    Write the page of a request: its result, and the results of all other algorithms but auto.
+
+    Each other algorithm searches for the same request now, with the seed of ``result``.
 
     Parameters
     ----------
     arguments : Namespace
-        Arguments of the command.
+        Parsed arguments of the command; ``html`` is the file to write.
     occupancy, space
         The map, and the robot's free space on it.
     request : dict
         Arguments that ``plan`` was called with, besides the space.
     result : PlanResult
-        What it returned.
+        Result that ``plan`` returned for the request.
 
     """
     asked = Shown(result, asked=True)
@@ -59,7 +61,7 @@ def write_plan_page(
 
 
 def _in_words(arguments: argparse.Namespace, request: dict[str, Any], seed: int) -> list[str]:
-    """Return the options of the request, as phrases for the page."""
+    """Return the options of the request as phrases for the page; most defaults are left out."""
     words = {
         f'robot radius {arguments.robot_radius:g} m': True,
         'unknown cells free': arguments.unknown == 'free',

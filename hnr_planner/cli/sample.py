@@ -112,7 +112,11 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Sample, write the points and the picture, and return the exit code."""
+    """
+    Draw the points, write them and the picture, and return the exit code.
+
+    The points are printed where neither ``--csv`` nor ``--plot`` names a file.
+    """
     from hnr_planner.core import diagnose
 
     if arguments.csv and arguments.plot and arguments.csv.resolve() == arguments.plot.resolve():
@@ -175,7 +179,11 @@ def _how_many(arguments: argparse.Namespace) -> str:
 
 
 def write_csv(chains: NDArray, file: TextIO) -> None:
-    """Write chains (n_chains, n, 2) as CSV, one line for each point, with all their digits."""
+    """
+    Write chains (n_chains, n, 2) [m] as CSV, one line for each point, with all digits.
+
+    Several chains have a third column: the number of the point's chain, from 0.
+    """
     if len(chains) == 1:
         file.write('x,y\n')
         file.writelines(f'{x!r},{y!r}\n' for x, y in _numbers(chains[0]))
@@ -186,5 +194,5 @@ def write_csv(chains: NDArray, file: TextIO) -> None:
 
 
 def _numbers(points: NDArray) -> Iterator[tuple[float, float]]:
-    """Yield points (n, 2) as pairs of Python floats."""
+    """Yield the points of an array (n, 2) as pairs of Python floats."""
     return ((float(x), float(y)) for x, y in points)

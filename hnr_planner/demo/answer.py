@@ -1,4 +1,4 @@
-"""Messages that the client received for one request, passed to the demo through a file."""
+"""Store what the client received for one request in a file, from which the demo reads it."""
 
 from __future__ import annotations
 
@@ -13,18 +13,19 @@ from numpy.typing import NDArray
 @dataclass(frozen=True, eq=False)
 class Answer:
     """
-    Response and messages of one request.
+    Service response and topic messages that the client received for one request.
 
     Attributes
     ----------
     outcome : str
         Name of the outcome, such as SOLVED.
     values : dict
-        The outcome's values, by name.
+        Values of the message on the topic ``outcome``, as text, by name.
     response : (m, 2)
-        The path in the response of the service [m].
+        Points of the path in the response of the service [m]; (0, 2) for an empty path.
     path, samples, parents : (m, 2), (k, 2), (k,)
-        Contents of the topics: points [m], and the row of each sample's parent.
+        Contents of the topics: points [m], and the row in ``samples`` of each sample's parent,
+        -1 for a root. They are empty unless the outcome is SOLVED.
     round_trip : float
         Time from the request to the response of the service [s].
 
@@ -39,7 +40,7 @@ class Answer:
     round_trip: float
 
     def write(self, folder: Path, algorithm: str) -> None:
-        """Write the answer into a folder, under the name of its algorithm."""
+        """Write the answer into a folder, in an ``.npz`` file named after the algorithm."""
         words = {'outcome': self.outcome, 'values': self.values, 'round_trip': self.round_trip}
         np.savez(
             folder / f'{algorithm}.npz',
@@ -52,7 +53,7 @@ class Answer:
 
     @classmethod
     def read(cls, folder: Path, algorithm: str) -> Answer:
-        """Read the answer of an algorithm from a folder."""
+        """Read the answer to an algorithm's request from the folder that ``write`` wrote to."""
         with np.load(folder / f'{algorithm}.npz') as file:
             arrays = {name: file[name] for name in ('response', 'path', 'samples', 'parents')}
             return cls(**json.loads(str(file['words'])), **arrays)

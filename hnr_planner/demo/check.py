@@ -2,7 +2,7 @@
 Check a path for the demo: every segment against the cells of the raw map file.
 
 The check is slow and simple on purpose, and shares no code with the planner, so that an error
-there cannot hide here.
+in the planner cannot repeat itself in the check.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from hnr_planner.maps import OccupancyMap
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-#: How deep a path may lie in an obstacle, because of rounding [cells].
+#: How deep a path may lie in an obstacle, because of rounding [sides of a cell].
 TOLERANCE = 1e-7
 
 Floats = NDArray[np.float64]
@@ -32,7 +32,8 @@ class Check:
     problems : tuple of str
         Descriptions of the faults; empty for a path that is free.
     length, clearance : float
-        Its length, and its least distance to an occupied square [m]; inf where there is none.
+        Length of the path, and its least distance to an occupied cell, a square [m]. Both are inf
+        where there is no path; clearance also where no cell is occupied.
     segments : int
         Number of segments checked.
 
@@ -56,8 +57,10 @@ def check_path(
     """
     Check a path (m, 2) [m] against a map: its ends, collisions, and its clearance.
 
-    Unknown cells and the outside of the map are obstacles, but clearance is required from occupied
-    cells only: inflation by cell centres keeps the radius up to one diagonal of a cell.
+    Ends may be at most 1e-6 m from ``start`` and ``goal``. Unknown cells, occupied cells (chance
+    of at least ``occupied_threshold`` percent) and the outside of the map are obstacles. From
+    occupied cells alone a clearance is required: ``robot_radius`` [m] less one diagonal of a cell,
+    since the planner inflates obstacles by distances between cell centres.
     """
     if len(path) == 0:
         return Check(('there is no path',), math.inf, math.inf, 0)
@@ -85,7 +88,11 @@ def check_path(
 
 
 def _in_cells(path: Floats, occupancy: OccupancyMap) -> Floats:
-    """Return the points as (column, row) of the grid, relative to its origin and yaw."""
+    """
+    Return the points (m, 2) of a path as (column, row) in the map's grid, in sides of a cell.
+
+    (0, 0) is the outer corner of cell [0, 0]; the map's origin and yaw are taken into account.
+    """
     x, y, yaw = occupancy.origin
     away = np.asarray(path, dtype=float) - (x, y)
     cos, sin = math.cos(yaw), math.sin(yaw)
@@ -96,7 +103,11 @@ def _in_cells(path: Floats, occupancy: OccupancyMap) -> Floats:
 
 
 def _collision(a: Floats, b: Floats, blocked: Bools) -> str:
-    """Return a description of the collision of a segment, or an empty string."""
+    """
+    Return a description of the collision of a segment from ``a`` to ``b``, or an empty string.
+
+    Both ends are (column, row) as ``_in_cells`` returns them; ``blocked`` is (rows, cols).
+    """
     if not np.isfinite([a, b]).all():
         return 'is not finite'
     rows, cols = blocked.shape
@@ -120,7 +131,11 @@ def _collision(a: Floats, b: Floats, blocked: Bools) -> str:
 
 
 def _clearance(segments: list[tuple[Floats, Floats]], occupied: Bools) -> float:
-    """Return the least distance, in cells, from the segments to the occupied squares."""
+    """
+    Return the least distance, in sides of a cell, from segments to occupied cells.
+
+    It is inf where no cell is occupied, and NaN where an end of a segment is not finite.
+    """
     best = math.inf
     for a, b in segments:
         if not np.isfinite([a, b]).all():
@@ -134,7 +149,13 @@ def _clearance(segments: list[tuple[Floats, Floats]], occupied: Bools) -> float:
 def _window(
     cells: Bools, low: Floats, high: Floats, reach: float
 ) -> tuple[tuple[int, int], Bools]:
-    """Return the cells within reach of a box, and the (column, row) at which they begin."""
+    """
+    Return the (column, row) of the first cell within reach of a box, and the cells from there on.
+
+    The box is from ``low`` to ``high`` as (column, row), ``reach`` is in sides of a cell; the
+    cells are a rectangular view of ``cells`` (rows, cols), with a margin of one cell where the
+    grid has one.
+    """
     limit = np.array(cells.shape[::-1])
     first = np.floor(np.clip(low - reach - 1, 0, limit)).astype(int)
     last = np.ceil(np.clip(high + reach + 1, 0, limit)).astype(int)
@@ -144,7 +165,12 @@ def _window(
 
 
 def _full(cells: Bools, height: int, width: int) -> Bools:
-    """Return whether the rectangle of a given size at each cell is full."""
+    """
+    Return whether every cell of a rectangle of ``height`` x ``width`` cells is set.
+
+    Element [row, column] is about the rectangle whose first cell is [row, column]; there is one
+    for every place where the rectangle lies inside ``cells``.
+    """
     rows, cols = cells.shape
     up, right = max(rows - height + 1, 0), max(cols - width + 1, 0)
     full = np.ones((up, right), dtype=bool)
@@ -156,9 +182,10 @@ def _full(cells: Bools, height: int, width: int) -> Bools:
 
 def _distances(a: Floats, b: Floats, lows: ArrayLike, highs: ArrayLike) -> Floats:
     """
-    Return the distances from a segment to boxes given by their corners, inf when there are none.
+    Return the distance (k,) from a segment to each of k boxes; for k = 0 one element, inf.
 
-    Where they do not meet, the nearest points include an end of the segment or a box's corner.
+    The boxes are from ``lows`` to ``highs``, both (k, 2). The distance to a box that the segment
+    meets is 0; else one of the two nearest points is an end of the segment or a corner of the box.
     """
     low, high = np.asarray(lows, dtype=float), np.asarray(highs, dtype=float)
     if len(low) == 0:
@@ -173,7 +200,7 @@ def _distances(a: Floats, b: Floats, lows: ArrayLike, highs: ArrayLike) -> Float
 
 
 def _meets(a: Floats, b: Floats, low: Floats, high: Floats) -> Bools:
-    """Return whether a segment intersects each box, by separating axes."""
+    """Return whether the segment meets each of k boxes (k,), by the test of separating axes."""
     beside = (np.maximum(a, b) < low).any(axis=1) | (np.minimum(a, b) > high).any(axis=1)
     normal = np.array((a[1] - b[1], b[0] - a[0]))
     offset = np.abs(((low + high) / 2 - a) @ normal)

@@ -36,11 +36,15 @@ POINT_FIELDS = {5: '<i4', 6: '<u4', 7: '<f4', 8: '<f8'}
 
 
 class LateError(Exception):
-    """A message, a response or a service did not arrive in time; the text names it."""
+    """Error that a message, a response or a service, named in the text, did not come in time."""
 
 
 class Client(Node):
-    """Node that requests paths and keeps the messages published for each, by their stamps."""
+    """
+    Node that requests paths and keeps the messages that the planner publishes.
+
+    Messages are kept by topic and stamp: those of a request have the stamp of its response.
+    """
 
     def __init__(self) -> None:
         super().__init__('hnr_planner_client')
@@ -52,7 +56,7 @@ class Client(Node):
         self.create_subscription(DiagnosticArray, '/diagnostics', self._note_health, 10)
 
     def _listen(self, topic: str, kind: type) -> None:
-        """Subscribe to a topic of the planner and keep its messages by their stamps."""
+        """Subscribe to a topic of the planner, and keep the messages on it by their stamps."""
         received = self._received[topic] = {}
 
         def keep(message: Any) -> None:
@@ -61,7 +65,11 @@ class Client(Node):
         self.create_subscription(kind, f'{PLANNER}/{topic}', keep, latched(100))
 
     def wait_until_ready(self, within: float) -> None:
-        """Wait until the planner reports that it has a map and can plan, or raise LateError."""
+        """
+        Wait until the planner reports that it has a map and can plan.
+
+        LateError is raised where it has not reported so after ``within`` seconds.
+        """
         self._wait(lambda: self._ready, within, 'a planner that is up and has a map')
 
     def ask(
@@ -73,7 +81,9 @@ class Client(Node):
         within: float,
     ) -> Answer:
         """
-        Request a path by an algorithm, and return response and messages.
+        Request a path by an algorithm, and return the response and the messages of the request.
+
+        Path and samples are awaited only where the outcome is SOLVED, and are empty otherwise.
 
         Parameters
         ----------
@@ -113,12 +123,17 @@ class Client(Node):
         return Answer(outcome.name, values, _points(response), path, samples, parents, round_trip)
 
     def _wait_for(self, topic: str, stamp: tuple[int, int]) -> None:
-        """Wait for the message of a request on a topic."""
+        """Wait for the message of a stamp on a topic; raise LateError after ``ARRIVE_WITHIN``."""
         received = self._received[topic]
         self._wait(lambda: stamp in received, ARRIVE_WITHIN, f'a message on {PLANNER}/{topic}')
 
     def _wait(self, condition: Callable[[], bool], within: float, what: str) -> None:
-        """Spin until the condition holds, or raise LateError."""
+        """
+        Spin the node until the condition holds.
+
+        LateError is raised where it does not hold after ``within`` seconds; ``what`` names in the
+        message what was awaited.
+        """
         deadline = time.monotonic() + within
         while not condition():
             if time.monotonic() > deadline:
@@ -126,14 +141,19 @@ class Client(Node):
             rclpy.spin_once(self, timeout_sec=0.1)
 
     def _note_health(self, message: DiagnosticArray) -> None:
-        """Record that the planner is ready."""
+        """Record that the planner is ready, where a status of the message says so."""
         for status in message.status:
             if status.name.startswith(f'/{PLANNER}:') and status.level == DiagnosticStatus.OK:
                 self._ready = True
 
 
 def main(argv: list[str] | None = None) -> int:
-    """Request a path by each algorithm; return the exit code, 0 when all were answered."""
+    """
+    Request a path by each algorithm, and return the exit code.
+
+    It is 0 when all requests were answered, with a path or without, 1 when something did not
+    arrive in time, and 130 when interrupted.
+    """
     parser = argparse.ArgumentParser(prog='python -m hnr_planner.demo.client', description=__doc__)
     for name in ('start', 'goal'):
         parser.add_argument(f'--{name}', type=float, nargs=2, required=True, metavar=('X', 'Y'))
@@ -177,7 +197,7 @@ def main(argv: list[str] | None = None) -> int:
 
 
 def _pose(point: tuple[float, float], frame: str) -> PoseStamped:
-    """Return a pose at a point; fields of messages take Python floats only."""
+    """Return a pose without rotation at a point (x, y) [m] of a frame."""
     pose = PoseStamped()
     pose.header.frame_id = frame
     pose.pose.position.x, pose.pose.position.y = (float(value) for value in point)
@@ -186,18 +206,22 @@ def _pose(point: tuple[float, float], frame: str) -> PoseStamped:
 
 
 def _stamp(message: Any) -> tuple[int, int]:
-    """Return the stamp of a message, which is that of its request."""
+    """Return the stamp (seconds, nanoseconds) of a message."""
     return message.header.stamp.sec, message.header.stamp.nanosec
 
 
 def _points(path: PathMessage) -> NDArray[np.float64]:
-    """Return the positions (m, 2) of a path."""
+    """Return the positions (m, 2) [m] of the poses of a path."""
     positions = (pose.pose.position for pose in path.poses)
     return np.array([(p.x, p.y) for p in positions]).reshape(-1, 2)
 
 
 def _samples(cloud: PointCloud2) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-    """Return the samples (k, 2) and the row of each one's parent (k,), in their order."""
+    """
+    Return the samples (k, 2) [m] of a cloud, and the row of each sample's parent (k,).
+
+    Samples are in the order in which they were drawn, by the cloud's field ``index``.
+    """
     layout = np.dtype(
         {
             'names': [field.name for field in cloud.fields],

@@ -1,8 +1,8 @@
 """
 Run the demo's processes, print their output line by line, and leave none behind.
 
-Each runs in a session of its own, so that Ctrl-C in a terminal reaches the demo alone, which then
-ends the others: SIGTERM first, SIGKILL for those that do not react.
+Each process runs in a session of its own, so that Ctrl-C in a terminal reaches the demo alone. The
+demo then ends the processes: by SIGTERM, and by SIGKILL where one still runs after ``END_WITHIN``.
 """
 
 from __future__ import annotations
@@ -30,11 +30,11 @@ SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
 
 class ProcessError(HnrError):
-    """A process died, or did not finish in time."""
+    """Error that a process died, did not finish in time, or could not be given a ROS domain."""
 
 
 class Screen:
-    """Printer of whole lines from several threads, each with the time since the beginning."""
+    """Printer of whole lines from several threads, with the time since its creation."""
 
     def __init__(self) -> None:
         self._began = time.monotonic()
@@ -43,18 +43,22 @@ class Screen:
 
     @property
     def silent_for(self) -> float:
-        """Time since the last line [s]."""
+        """Time since the last line was printed [s]."""
         return time.monotonic() - self._last
 
     def say(self, who: str, line: str) -> None:
-        """Print a line of the process ``who``."""
+        """Print a line with the time and the name of the process that it comes from."""
         with self._lock:
             self._last = time.monotonic()
             print(f'{self._last - self._began:6.1f} s  {who:<8} {line}', flush=True)
 
 
 class Interruptions:
-    """Handler that turns signals into KeyboardInterrupt, delayed while they are held."""
+    """
+    Handler that turns each signal of ``SIGNALS`` into KeyboardInterrupt.
+
+    While ``held`` is in effect the exception waits until the end of its block.
+    """
 
     def __init__(self) -> None:
         self._held = False
@@ -62,7 +66,7 @@ class Interruptions:
 
     @contextmanager
     def caught(self) -> Iterator[None]:
-        """Handle the signals inside the block, and restore the handlers after it."""
+        """Handle ``SIGNALS`` inside the block, and restore their former handlers at its end."""
         before = {number: signal.signal(number, self._handle) for number in SIGNALS}
         try:
             yield
@@ -72,7 +76,11 @@ class Interruptions:
 
     @contextmanager
     def held(self) -> Iterator[None]:
-        """Let the block end before an interruption is raised."""
+        """
+        Let the block end before KeyboardInterrupt is raised.
+
+        It is raised at the end of the block where a signal came inside it.
+        """
         self._held = True
         try:
             yield
@@ -96,9 +104,9 @@ class Processes:
     Parameters
     ----------
     screen : Screen
-        Prints their output, with the name of each.
+        Prints the output of the processes, each line with the name of its process.
     interruptions : Interruptions
-        Held while a process is started or ended, so that none is lost.
+        Held while a process is started or ended, so that no process is left behind.
     domain : int
         ROS_DOMAIN_ID of all of them.
     logs : Path
@@ -116,7 +124,7 @@ class Processes:
         self._readers: list[threading.Thread] = []
 
     def start(self, name: str, module: str, arguments: Sequence[str]) -> None:
-        """Start a Python module under a name."""
+        """Start a Python module with arguments as the process called ``name``."""
         with self._interruptions.held():
             process = subprocess.Popen(
                 [sys.executable, '-m', module, *arguments],
@@ -135,12 +143,14 @@ class Processes:
 
     def wait_for(self, name: str, within: float, waiting: str) -> None:
         """
-        Wait until a process has ended with code 0; print ``waiting`` while no other line comes.
+        Wait until a process has ended with code 0, for at most ``within`` seconds.
+
+        ``waiting`` is printed whenever nothing has been printed for five seconds.
 
         Raises
         ------
         ProcessError
-            When it ends with another code or not in time, or another process dies.
+            When the process ends with another code or not in time, or another process ends.
 
         """
         deadline = time.monotonic() + within
@@ -156,14 +166,19 @@ class Processes:
             raise ProcessError(f'the {name} ended with exit code {code}; see its lines above')
 
     def check_alive(self, *, waiting_for: str = '') -> None:
-        """Raise ProcessError when a process has ended other than the one waited for."""
+        """Raise ProcessError where a process other than ``waiting_for`` has ended."""
         for name, process in self._running.items():
             code = process.poll()
             if code is not None and name != waiting_for:
                 raise ProcessError(f'the {name} died with exit code {code}; see its lines above')
 
     def stop(self) -> list[str]:
-        """End all processes that still run; return descriptions of what went wrong."""
+        """
+        End all processes that still run; return descriptions of what went wrong.
+
+        A process that has to be killed is described, and one that ends with an exit code other
+        than 0 without being ended by SIGTERM.
+        """
         with self._interruptions.held():
             complaints = []
             for process in self._running.values():
@@ -193,7 +208,11 @@ class Processes:
 
 
 def free_domain() -> int:
-    """Return a ROS domain that is not in use on this machine: its discovery port is free."""
+    """
+    Return a random ROS domain from 1 to 101 whose discovery port is free on this machine.
+
+    ProcessError is raised where none is.
+    """
     domains = list(range(1, 102))  # those whose ports are safe on every system
     random.shuffle(domains)
     for domain in domains:
@@ -207,7 +226,12 @@ def free_domain() -> int:
 
 
 def _environment(domain: int, logs: Path) -> dict[str, str]:
-    """Return the environment of the processes: this package, this machine only, plain logs."""
+    """
+    Return the environment variables of the processes.
+
+    They import this package, discover each other on this machine only, in the ROS domain
+    ``domain``, and write plain log files into ``logs``.
+    """
     environment = {
         name: value
         for name, value in os.environ.items()
@@ -227,7 +251,7 @@ def _environment(domain: int, logs: Path) -> dict[str, str]:
 
 
 def _send(process: subprocess.Popen[str], number: signal.Signals) -> None:
-    """Send a signal to the session of a process, if it still exists."""
+    """Send a signal to all processes in the group of a process; do nothing where it is gone."""
     try:
         os.killpg(process.pid, number)
     except ProcessLookupError:

@@ -1,4 +1,4 @@
-"""Show the answers in a table and a picture."""
+"""Show the answers of the planning node in a table and a picture."""
 
 from __future__ import annotations
 
@@ -36,7 +36,12 @@ def table(answers: dict[str, Answer], checks: dict[str, Check]) -> str:
 
 
 def aligned(rows: Sequence[Sequence[str]]) -> str:
-    """Return rows of text as aligned columns: the first two and the last to the left."""
+    """
+    Return rows of text as aligned columns, with a line of dashes below the first row.
+
+    Each row has the columns of ``HEADINGS``: the first two and the last are aligned to the left,
+    the others to the right.
+    """
     widths = [max(len(row[col]) for row in rows) for col in range(len(rows[0]))]
     lines = []
     for row in rows:
@@ -67,17 +72,17 @@ def draw(scene: Scene, answers: dict[str, Answer], file: Path) -> None:
 
 
 def transitions(answer: Answer) -> int:
-    """Return the number of transitions of the search."""
+    """Return the number of transitions that the node reports; 0 where it reports none."""
     return int(answer.values.get('iterations', '0'))
 
 
 def planning_time(answer: Answer) -> float:
-    """Return the planning time that the node reports [s]."""
+    """Return the planning time that the node reports [s]; NaN where it reports none."""
     return float(answer.values.get('planning_time', 'nan'))
 
 
 def _title(algorithm: str, answer: Answer) -> str:
-    """Return the heading of one panel."""
+    """Return the heading of the picture's panel for one algorithm."""
     if answer.outcome != 'SOLVED':
         return f'{ALGORITHMS[algorithm]}: {answer.outcome}'
     return (

@@ -38,17 +38,18 @@ def run_demo(map_file: Path, out: Path, *, keep: bool = False) -> int:
     out : Path
         The picture to write.
     keep : bool
-        Leave the nodes up until Ctrl-C, and print calls to try.
+        Leave the nodes running until Ctrl-C, and print example calls for them.
 
     Returns
     -------
     int
-        0 for success, 1 when something failed (a line says what), 130 when interrupted.
+        0 for success, 1 when a request, a check or a process failed (a line on stderr says which),
+        130 when interrupted.
 
     Raises
     ------
     MapFileError, SceneError
-        When the map cannot be read, or has no free space.
+        When the map cannot be read, or has too little free space for a request.
 
     """
     screen, interruptions = Screen(), Interruptions()
@@ -73,7 +74,7 @@ def run_demo(map_file: Path, out: Path, *, keep: bool = False) -> int:
 
 
 def _introduce(scene: Scene, screen: Screen) -> None:
-    """Print map, robot, start and goal."""
+    """Print the map's size, the robot's radius, start and goal."""
     rows, cols = scene.occupancy.data.shape
     resolution = scene.occupancy.resolution
     screen.say(
@@ -88,7 +89,12 @@ def _introduce(scene: Scene, screen: Screen) -> None:
 def _nodes(
     scene: Scene, screen: Screen, interruptions: Interruptions
 ) -> Iterator[tuple[Processes, int, Path]]:
-    """Run the map source and the planner; yield them, their domain and a folder for messages."""
+    """
+    Run the map source and the planner in the block; end them at its end.
+
+    Yield the processes, their ROS domain, and a temporary folder for messages. ProcessError is
+    raised where a process had to be killed, or ended with an error.
+    """
     domain = free_domain()
     with TemporaryDirectory(prefix='hnr_planner_demo_') as name:
         folder = Path(name)
@@ -107,13 +113,17 @@ def _nodes(
 
 
 def _map_arguments(scene: Scene) -> list[str]:
-    """Return the ROS arguments of the map source; quotes make any file name a string."""
+    """
+    Return the ROS arguments of the map source.
+
+    The name of the map file is in quotes, so that ROS takes any name for a string.
+    """
     file = json.dumps(str(scene.file), ensure_ascii=False)
     return ['--ros-args', '-p', f'yaml_filename:={file}']
 
 
 def _planner_arguments(scene: Scene) -> list[str]:
-    """Return the ROS arguments of the planner."""
+    """Return the ROS arguments of the planner: robot radius [m], time limit [s] and seed."""
     parameters = {
         'robot_radius': scene.robot_radius,
         'time_limit': TIME_LIMIT,
@@ -124,7 +134,12 @@ def _planner_arguments(scene: Scene) -> list[str]:
 
 
 def _ask(scene: Scene, processes: Processes, folder: Path) -> dict[str, Answer]:
-    """Let the client request both paths, and return what it received."""
+    """
+    Let the client request a path by each algorithm; return the answers by algorithm.
+
+    ``folder`` is where the client writes the answers. ProcessError is raised where the client
+    fails.
+    """
     ends = [word for name in ('start', 'goal') for word in _point_argument(scene, name)]
     limits = ['--ready-within', str(READY_WITHIN), '--answer-within', str(2 * TIME_LIMIT)]
     processes.start('client', 'hnr_planner.demo.client', [*ends, '--out', str(folder), *limits])
@@ -135,12 +150,17 @@ def _ask(scene: Scene, processes: Processes, folder: Path) -> dict[str, Answer]:
 
 
 def _point_argument(scene: Scene, name: str) -> list[str]:
-    """Return the arguments for the start or the goal, with all digits."""
+    """Return the client's arguments for the start or the goal, with all digits."""
     return [f'--{name}', *(repr(value) for value in getattr(scene, name))]
 
 
 def _show(scene: Scene, answers: dict[str, Answer], out: Path) -> bool:
-    """Check the answers, print the table, write the picture; return whether no check failed."""
+    """
+    Check the answers, print the table and write the picture; return whether all is well.
+
+    It is False where an outcome is other than SOLVED, or a check found a fault; each is printed as
+    one line on stderr.
+    """
     checks = {}
     for algorithm, answer in answers.items():
         checks[algorithm] = check_path(
@@ -164,7 +184,7 @@ def _show(scene: Scene, answers: dict[str, Answer], out: Path) -> bool:
 
 
 def _problems(answer: Answer, check: Check) -> list[str]:
-    """Return descriptions of the faults of an answer."""
+    """Return descriptions of the faults of an answer and of its check; empty for a good answer."""
     if answer.outcome != 'SOLVED':
         return [f'{answer.outcome}: {answer.values.get("why", "no reason was given")}']
     problems = list(check.problems)
@@ -176,7 +196,7 @@ def _problems(answer: Answer, check: Check) -> list[str]:
 
 
 def _print_calls(scene: Scene, domain: int) -> None:
-    """Print example calls for the running nodes."""
+    """Print example calls for the running nodes, in their ROS domain."""
     start, goal = (
         f'{{header: {{frame_id: map}}, pose: {{position: {{x: {x:.2f}, y: {y:.2f}}}}}}}'
         for x, y in (scene.start, scene.goal)
@@ -208,7 +228,7 @@ Without the ros2 command, the demo's own client asks:
 
 
 def _wait_for_interruption(processes: Processes) -> None:
-    """Wait for Ctrl-C, which ends the demo; raise ProcessError when a node dies."""
+    """Wait for Ctrl-C, and return after it; raise ProcessError when a node has ended."""
     try:
         while True:
             processes.check_alive()

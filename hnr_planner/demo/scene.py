@@ -19,19 +19,23 @@ OFFICE = Path('config', 'maps', 'office.yaml')
 ROBOT_RADIUS = 0.22
 #: A robot fits a map when it can reach this fraction of the cells that a point could reach.
 LARGE_ENOUGH = 0.5
-#: Distance of start and goal from blocked cells, where the map is wide enough [cells].
+#: Largest distance that start and goal keep from blocked cells, where there is room [cells].
 ROOM_AROUND = 10
 
 Point = tuple[float, float]
 
 
 class SceneError(HnrError, ValueError):
-    """A map on which nothing can be planned; the message names it and the reason."""
+    """Error that nothing can be planned on a map, or that the map of the package is missing."""
 
 
 @dataclass(frozen=True)
 class Scene:
-    """Scene of the demo: a map file, the free space of the robot, start and goal [m]."""
+    """
+    Scene of the demo: map, free space of the robot on it, start and goal.
+
+    ``file`` is the map's file; ``start`` and ``goal`` are (x, y) in the map frame [m].
+    """
 
     file: Path
     occupancy: OccupancyMap
@@ -47,15 +51,16 @@ class Scene:
 
 def choose_scene(file: Path) -> Scene:
     """
-    Return the scene on a map file.
+    Choose the scene on a map file, with the robot's radius, the start and the goal.
 
     Start and goal are far apart in the largest component of the free space. The robot's radius is
-    0.22 m where that leaves enough of the map, and the cells are no larger; else 0.
+    0.22 m where the cells are no larger than that, and where the robot reaches at least half as
+    many cells as a point does; else 0.
 
     Raises
     ------
     MapFileError, SceneError
-        When the map cannot be read, or has no free space.
+        When the map cannot be read, or its largest component has fewer than two cells.
 
     """
     occupancy = load_map(file)
@@ -69,7 +74,11 @@ def choose_scene(file: Path) -> Scene:
 
 
 def office_file() -> Path:
-    """Return the map file of the package, in the source folder or where it is installed."""
+    """
+    Return the office map of the package, in the source folder or where it is installed.
+
+    SceneError is raised where there is no such file.
+    """
     package = Path(__file__).resolve().parents[1]
     installed = Path('share', 'hnr_planner', OFFICE)
     prefixes = [Path(p) for p in os.environ.get('AMENT_PREFIX_PATH', '').split(os.pathsep) if p]
@@ -85,8 +94,9 @@ def farthest_cells(free: NDArray[np.bool_]) -> tuple[NDArray[np.int64], NDArray[
     """
     Return two cells [row, column] whose shortest path through connected free cells is long.
 
-    The first is the farthest from an arbitrary cell, the second the farthest from the first. Cells
-    away from blocked ones are preferred, since a robot seldom starts in a corner.
+    ``free`` (rows, cols) is one connected component. The first cell is the farthest from an
+    arbitrary cell, the second the farthest from the first. Both are up to ``ROOM_AROUND`` cells
+    away from cells that are not free, as long as at least half of the free cells are so far away.
     """
     inside = free
     for _ in range(ROOM_AROUND):
@@ -100,7 +110,7 @@ def farthest_cells(free: NDArray[np.bool_]) -> tuple[NDArray[np.int64], NDArray[
 
 
 def _space_that_fits(occupancy: OccupancyMap) -> GridSpace:
-    """Return the space of a robot of the usual radius, or of a point where that does not fit."""
+    """Return the free space of a robot of ``ROBOT_RADIUS``, or else that of a point."""
     point, robot = (
         GridSpace.from_occupancy(
             occupancy.data, occupancy.resolution, occupancy.origin, robot_radius=radius
@@ -114,7 +124,7 @@ def _space_that_fits(occupancy: OccupancyMap) -> GridSpace:
 
 
 def _without_rim(cells: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Return the cells whose eight neighbours belong to the set as well."""
+    """Return the cells of a set (rows, cols) all of whose eight neighbours belong to the set."""
     padded = np.pad(cells, 1)
     rows, cols = cells.shape
     inside = cells.copy()
@@ -127,7 +137,12 @@ def _without_rim(cells: NDArray[np.bool_]) -> NDArray[np.bool_]:
 def _farthest(
     free: NDArray[np.bool_], source: NDArray[np.int64], wanted: NDArray[np.bool_]
 ) -> NDArray[np.int64]:
-    """Return the wanted cell that a wavefront from the source through free cells reaches last."""
+    """
+    Return the wanted cell [row, column] that a wavefront from the source reaches last.
+
+    The wavefront passes from a free cell to its four free neighbours; where it reaches no wanted
+    cell, the source is returned.
+    """
     padded = np.pad(free, 1)
     width = padded.shape[1]
     unseen, wanted_flat = padded.ravel(), np.pad(wanted, 1).ravel()

@@ -34,7 +34,13 @@ if TYPE_CHECKING:
 
 
 class Plan(NamedTuple):
-    """Path and samples of one search, for a picture; points are (x, y) in metres."""
+    """
+    Path and samples of one search, for one panel of a figure.
+
+    ``path`` is (m, 2), ``samples`` (k, 2) and each of ``others``, further paths, (n, 2); points
+    are (x, y) in the map frame [m]. ``parents`` (k,) has the row in ``samples`` of each sample's
+    parent, -1 for a root.
+    """
 
     title: str
     path: NDArray[np.float64]
@@ -59,7 +65,7 @@ def figure_of_plans(
     occupancy : OccupancyMap
         The map of all panels.
     plans : sequence of Plan
-        At least one; an empty path is not drawn.
+        At least one plan; a path without points is not drawn.
     blocked
         (rows, cols) bool, optional: cells that the planner may not enter.
 
@@ -93,7 +99,11 @@ def figure_of_samples(
     title: str,
     blocked: NDArray[np.bool_] | None = None,
 ) -> Figure:
-    """Return a figure of the map with the points (k, 2) of a walk, coloured in their order."""
+    """
+    Return a figure of the map with the points (k, 2) [m] of a walk, coloured in their order.
+
+    ``blocked`` (rows, cols) are the cells that the walk may not enter, as for ``draw_map``.
+    """
     figure, (axes,) = _panels(occupancy, 1)
     draw_map(axes, occupancy, blocked)
     draw_samples(axes, samples)
@@ -104,7 +114,7 @@ def figure_of_samples(
 
 
 def save(figure: Figure, file: str | Path) -> None:
-    """Write the figure to a file; its ending (.png, .svg, .pdf) chooses the format."""
+    """Write a figure to a file; the file's suffix (.png, .svg, .pdf) chooses the format."""
     figure.savefig(file, dpi=160, facecolor='white', bbox_inches='tight', pad_inches=0.12)
 
 
@@ -118,7 +128,7 @@ def _panels(occupancy: OccupancyMap, count: int) -> tuple[Figure, list[Axes]]:
 
 
 def _legend(figure: Figure, handles: Sequence[Patch | Line2D], n_columns: int) -> None:
-    """Add one legend for all panels, below them."""
+    """Add one legend for all panels to a figure, below the panels."""
     figure.legend(
         handles=handles,
         loc='upper center',
@@ -135,7 +145,7 @@ def _legend(figure: Figure, handles: Sequence[Patch | Line2D], n_columns: int) -
 def _cell_handles(
     occupancy: OccupancyMap, blocked: NDArray[np.bool_] | None
 ) -> list[Patch | Line2D]:
-    """Return entries of the legend for the kinds of cells that the map has."""
+    """Return one entry of the legend for each kind of cell that occurs on the map."""
     kinds = (KINDS[kind] for kind in kinds_present(cell_kinds(occupancy, blocked)))
     return [
         Patch(facecolor=colour, edgecolor=FRAME, linewidth=0.5, label=label)
@@ -144,12 +154,12 @@ def _cell_handles(
 
 
 def _line(colour: str, label: str) -> Line2D:
-    """Return a path for the legend."""
+    """Return the entry of the legend for a path."""
     return Line2D([], [], color=colour, linewidth=2.4, label=label)
 
 
 def _mark(colour: str, shape: str, size: float, label: str) -> Line2D:
-    """Return a mark for the legend."""
+    """Return the entry of the legend for a mark of a size in points."""
     return Line2D(
         [],
         [],
@@ -163,7 +173,7 @@ def _mark(colour: str, shape: str, size: float, label: str) -> Line2D:
 
 
 def _age_scale(figure: Figure, axes: Axes) -> None:
-    """Add the scale of the samples' colours at the right of axes."""
+    """Add the scale of the samples' colours to a figure, at the right of ``axes``."""
     beside = axes.inset_axes((1.025, 0, 0.022, 1))
     scale = figure.colorbar(ScalarMappable(Normalize(0, 1), AGES), cax=beside)
     scale.set_ticks([0, 1], labels=['first', 'last'])

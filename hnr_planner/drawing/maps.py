@@ -1,4 +1,4 @@
-"""Draw the cells of a map, each in the colour of its kind."""
+"""Draw the cells of a map, each in the colour of its kind: free, unknown and so on."""
 
 from __future__ import annotations
 
@@ -63,7 +63,11 @@ def draw_map(
 def cell_kinds(
     occupancy: OccupancyMap, blocked: NDArray[np.bool_] | None = None
 ) -> NDArray[np.uint8]:
-    """Return the kind of each cell (rows, cols), as an index of ``KINDS``."""
+    """
+    Return the kind of each cell (rows, cols), as an index of ``KINDS``.
+
+    A free cell that is ``blocked`` (rows, cols) is too near for the robot; with None no cell is.
+    """
     kinds: NDArray[np.uint8] = _KIND_OF_VALUE[_as_bytes(occupancy)]
     if blocked is not None:
         kinds[(kinds == 0) & blocked] = 1
@@ -71,12 +75,17 @@ def cell_kinds(
 
 
 def kinds_present(kinds: NDArray[np.uint8]) -> list[int]:
-    """Return the kinds that occur among cells, in the order of ``KINDS``."""
+    """Return the indices of ``KINDS`` that occur among cells, in increasing order."""
     return [kind for kind in range(len(KINDS)) if (kinds == kind).any()]
 
 
 def known_box(occupancy: OccupancyMap) -> NDArray[np.float64]:
-    """Return the box ((x, y) low, (x, y) high) [m] around the known cells, with a margin."""
+    """
+    Return the box ((x, y) low, (x, y) high) [m] in the map frame around the known cells.
+
+    Its sides are parallel to the axes of the map frame, with a margin of 1.2 % of the longer side.
+    Where no cell is known the box is around all cells.
+    """
     known = _as_bytes(occupancy) <= 100
     if not known.any():
         known[:] = True
@@ -92,9 +101,10 @@ def known_box(occupancy: OccupancyMap) -> NDArray[np.float64]:
 
 def _image(kinds: NDArray[np.uint8]) -> tuple[NDArray[np.uint8], int]:
     """
-    Return the colours (rows, cols, 4) of cells, and how many cells a pixel is wide and high.
+    Return the pixels (rows, cols, 4) of an image of cells, and the side of a pixel in cells.
 
-    A pixel is the mean of its block of cells; a block at the upper or right edge may be smaller.
+    The colours are red, green, blue and alpha in 0..255. A pixel is the mean of its
+    block of cells; a block at the last rows or columns may be smaller.
     """
     colours = np.round(255 * to_rgba_array([colour for _, colour in KINDS])).astype(np.uint8)
     block = -(-max(kinds.shape) // LARGEST_SIDE)
@@ -117,18 +127,22 @@ def _image(kinds: NDArray[np.uint8]) -> tuple[NDArray[np.uint8], int]:
 
 
 def _as_bytes(occupancy: OccupancyMap) -> NDArray[np.uint8]:
-    """Return the values of the cells as unsigned bytes: unknown ones are above 100."""
+    """Return the values of the cells (rows, cols) as unsigned bytes; -1 becomes 255."""
     return np.asarray(occupancy.data, dtype=np.int8).view(np.uint8)
 
 
 def _to_map_frame(occupancy: OccupancyMap) -> Affine2D:
-    """Return the transform from (column, row) to (x, y) in metres."""
+    """
+    Return the transform from (column, row) of the grid to (x, y) [m] in the map frame.
+
+    (0, 0) is the outer corner of cell [0, 0], so that cell centres are at halves.
+    """
     x, y, yaw = occupancy.origin
     return Affine2D().scale(occupancy.resolution).rotate(yaw).translate(x, y)
 
 
 def _style(axes: Axes) -> None:
-    """Label the axes in metres, in faint colours."""
+    """Label the axes in metres, in faint colours, on a background as for unknown cells."""
     axes.set_xlabel('x [m]', color=FAINT_INK, fontsize=9)
     axes.set_ylabel('y [m]', color=FAINT_INK, fontsize=9)
     axes.tick_params(colors=FAINT_INK, labelsize=8, length=3)

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 def draw_tree(axes: Axes, samples: ArrayLike, parents: ArrayLike) -> None:
     """
-    Draw the edge from every sample to its parent: a chain, a tree or several.
+    Draw the edge from every sample to its parent; samples may form chains or several trees.
 
     Parameters
     ----------
@@ -25,7 +25,7 @@ def draw_tree(axes: Axes, samples: ArrayLike, parents: ArrayLike) -> None:
     samples : (k, 2) array_like
         Points [m].
     parents : (k,) array_like of int
-        Row of each sample's parent, -1 for a root.
+        Row in ``samples`` of each sample's parent, -1 for a root, which has no edge.
 
     """
     points, parent_rows = np.asarray(samples, dtype=float), np.asarray(parents, dtype=int)
@@ -76,7 +76,9 @@ def draw_samples(axes: Axes, samples: ArrayLike) -> None:
 
 def draw_sample_cells(axes: Axes, samples: ArrayLike, side: float) -> None:
     """
-    Draw samples as the squares that contain them: sharp at any size, and a tenth of the bytes.
+    Draw samples as the squares of a lattice that contain them.
+
+    Squares are sharp at any size, and take a tenth of the bytes that discs take in a file.
 
     Parameters
     ----------
@@ -84,7 +86,7 @@ def draw_sample_cells(axes: Axes, samples: ArrayLike, side: float) -> None:
         The axes to draw on.
     samples : (k, 2) array_like
         At least one point [m], in the order in which they were drawn; a square has the colour of
-        its last one.
+        the last sample in it.
     side : float
         Side of the squares [m].
 
@@ -124,7 +126,7 @@ def draw_path(axes: Axes, path: ArrayLike, *, colour: str = PATH) -> None:
 
 
 def draw_ends(axes: Axes, start: ArrayLike, goal: ArrayLike) -> None:
-    """Mark the start with a disc and the goal with a star; both are (2,) [m]."""
+    """Mark the start with a disc and the goal with a star; both are points (x, y) [m]."""
     for point, colour, shape, size in ((start, START, 'o', 80), (goal, GOAL, '*', 210)):
         x, y = np.asarray(point, dtype=float)
         axes.scatter(
@@ -140,5 +142,9 @@ def draw_ends(axes: Axes, start: ArrayLike, goal: ArrayLike) -> None:
 
 
 def _ages(count: int) -> NDArray[np.float64]:
-    """Return the rank of each of ``count`` samples in their order, from 0 to 1."""
+    """
+    Return the ages (count,) of samples in their order: from 0, the first, to 1, the last.
+
+    A single sample has the age 1.
+    """
     return np.linspace(0.0, 1.0, count) if count > 1 else np.ones(count)

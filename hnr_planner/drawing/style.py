@@ -1,7 +1,7 @@
 """
 Colours that all pictures share.
 
-They are those of Okabe and Ito, which people with any kind of colour vision can tell apart.
+The colours are those of Okabe and Ito, which people with any kind of colour vision can tell apart.
 """
 
 from __future__ import annotations
@@ -34,5 +34,5 @@ AGES = LinearSegmentedColormap.from_list('ages', ('#A9D8F5', '#56B4E9', '#0072B2
 
 
 def draw_title(axes: Axes, words: str) -> None:
-    """Write a title above axes, at their left."""
+    """Write a title above ``axes``, aligned with their left side."""
     axes.set_title(words, loc='left', fontsize=10.5, color=INK, pad=8)

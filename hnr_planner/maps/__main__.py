@@ -16,7 +16,7 @@ OFFICE_SEED = 5
 
 
 def main(folder: Path) -> None:
-    """Write every sample map into a folder."""
+    """Write the sample map into a folder, which is created where it is missing."""
     folder.mkdir(parents=True, exist_ok=True)
     save_map(building(OFFICE_SEED), folder / 'office.yaml')
 

@@ -22,8 +22,8 @@ def building(seed: int, *, resolution: float = 0.05, margin: float = 1.5) -> Occ
     seed : int
         The same seed gives the same map.
     resolution, margin : float
-        Side of a cell, and width of the unknown strip around the building [m]. The building's
-        lower left corner is the map frame's (0, 0).
+        Side of a cell, and width of the strip around the building that belongs to the map [m].
+        The building's lower left corner is the map frame's (0, 0).
 
     """
     rng = np.random.default_rng(seed)

@@ -1,4 +1,4 @@
-"""The error and the warning that map files give."""
+"""Exception and warning classes for map files that cannot be read or repeat a key."""
 
 from __future__ import annotations
 
@@ -8,13 +8,17 @@ from hnr_planner.core.errors import HnrError
 
 
 class MapFileError(HnrError, ValueError):
-    """A map file cannot be read: the message names the file, the key, the value and the rule."""
+    """
+    Error that a map file cannot be read.
+
+    The message names the file and the reason: for a key, its name, its value and the rule.
+    """
 
     @classmethod
     def about(cls, path: Path, reason: str) -> MapFileError:
-        """Return the error with the file's path and the reason in one line."""
+        """Return the error with the message ``path: reason`` in one line."""
         return cls(f'{path}: {" ".join(reason.split())}')
 
 
 class MapFileWarning(UserWarning):
-    """A key of a map file occurs repeatedly; the message names the file and the key."""
+    """Warning that a key occurs repeatedly in a map file; the message names file and key."""

@@ -41,12 +41,16 @@ _PATTERNS = {kind: re.compile(pattern, re.DOTALL) for kind, pattern in _KINDS.it
 
 
 def kind_of(head: bytes) -> str | None:
-    """Return the kind of a file by its first bytes, such as ``PNG image``; None if unknown."""
+    """
+    Return the kind of a file, such as ``PNG image``; None where no kind is recognised.
+
+    ``head`` has the first ``HEAD`` bytes of the file, or all bytes of a shorter one.
+    """
     return next((kind for kind, pattern in _PATTERNS.items() if pattern.match(head)), None)
 
 
 def with_article(kind: str) -> str:
-    """Return a kind with ``a`` or ``an``."""
+    """Return the name of a kind with the article ``a`` or ``an`` before it."""
     # Letters that are spelt out count as they sound: an SVG, a UTF.
     is_vowel = kind[0] in 'aeio' or (kind[:2].isupper() and kind[0] in 'AEFHILMNORSX')
     return f'{"an" if is_vowel else "a"} {kind}'

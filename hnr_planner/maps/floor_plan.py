@@ -2,7 +2,8 @@
 Generate the geometry of an office floor: rooms, corridors, doors and windows.
 
 Two long corridors and a cross corridor run around a core of inner rooms and end in a hall;
-rooms of different sizes line them. Lengths are in metres, (0, 0) is the building's corner.
+rooms of different sizes line the corridors. Coordinates are in metres: (0, 0) is the building's
+lower left (south-west) corner, x grows to the east and y to the north.
 """
 
 from __future__ import annotations
@@ -26,7 +27,7 @@ APRON = 1.1
 
 
 class Rect(NamedTuple):
-    """A rectangle along the axes [m]."""
+    """Rectangle with sides along the x and y axes, by the coordinates of its four sides [m]."""
 
     left: float
     bottom: float
@@ -34,11 +35,11 @@ class Rect(NamedTuple):
     top: float
 
     def grown(self, by: float) -> Rect:
-        """Return the rectangle enlarged by the same length on every side."""
+        """Return the rectangle with every side moved outwards by ``by`` [m]."""
         return Rect(self.left - by, self.bottom - by, self.right + by, self.top + by)
 
     def meets(self, other: Rect) -> bool:
-        """Return whether the two have a point in common."""
+        """Return whether the two rectangles have a point in common; their sides belong to them."""
         return (
             self.left <= other.right
             and other.left <= self.right
@@ -48,14 +49,23 @@ class Rect(NamedTuple):
 
 
 class Room(NamedTuple):
-    """The inside of a room, and its use: office, meeting, storage, hall or corridor."""
+    """
+    Room or corridor: its use, and the rectangle between its walls [m].
+
+    ``kind`` is office, meeting, storage, hall or corridor.
+    """
 
     kind: str
     rect: Rect
 
 
 class FloorPlan(NamedTuple):
-    """The rooms, the areas that doors need free, and the material (rows, cols) of every cell."""
+    """
+    Rooms and corridors, areas that stay free around doorways, and the material of every cell.
+
+    ``material`` is (rows, cols) of AIR, SOLID and GLASS (0, 1, 2), in cells of side ``CELL``:
+    row 0 lies along y = 0, and column 0 along x = 0.
+    """
 
     rooms: tuple[Room, ...]
     aprons: tuple[Rect, ...]
@@ -63,7 +73,7 @@ class FloorPlan(NamedTuple):
 
 
 def draw_floor_plan(rng: np.random.Generator) -> FloorPlan:
-    """Generate a floor whose rooms can all be entered, without furniture."""
+    """Generate a random floor plan without furniture, whose rooms can all be entered."""
     corridors, rooms = _layout(rng)
     material = np.full((round(HEIGHT / CELL), round(WIDTH / CELL)), SOLID, np.uint8)
     for room in corridors + rooms:
@@ -81,13 +91,17 @@ def draw_floor_plan(rng: np.random.Generator) -> FloorPlan:
 
 
 def fill(material: NDArray[np.uint8], rect: Rect, value: int) -> None:
-    """Set the material of the cells of a rectangle."""
+    """Set the material of a rectangle [m], in place; its sides are rounded to whole cells."""
     left, bottom, right, top = (max(0, round(edge / CELL)) for edge in rect)
     material[bottom:top, left:right] = value
 
 
 def fill_disc(material: NDArray[np.uint8], x: float, y: float, radius: float, value: int) -> None:
-    """Set the material of the cells of a disc."""
+    """
+    Set the material of a disc around (x, y) [m], in place.
+
+    It is set in the cells whose centres are at most ``radius`` [m] from (x, y).
+    """
     around = Rect(x, y, x, y).grown(radius + CELL)
     left, bottom, right, top = (max(0, round(edge / CELL)) for edge in around)
     window = material[bottom:top, left:right]
@@ -97,7 +111,7 @@ def fill_disc(material: NDArray[np.uint8], x: float, y: float, radius: float, va
 
 
 def _layout(rng: np.random.Generator) -> tuple[list[Room], list[Room]]:
-    """Return the corridors and the rooms."""
+    """Draw a random layout; return the three corridors, and the other rooms, the hall first."""
     aisle = rng.uniform(2.0, 2.4)
     south = OUTER_WALL + rng.uniform(4.8, 5.8)  # where the rooms of the south front end
     north = HEIGHT - OUTER_WALL - rng.uniform(4.8, 5.8)
@@ -126,7 +140,12 @@ def _layout(rng: np.random.Generator) -> tuple[list[Room], list[Room]]:
 
 
 def _core(rng: np.random.Generator, walls: Rect) -> list[Room]:
-    """Return the inner rooms, back to back; one of each row is a shaft that nobody enters."""
+    """
+    Return the inner rooms: two rows, back to back.
+
+    ``walls`` [m] is the outer edge of the walls around both rows. One place in each row, not
+    the first or the last, has no room: it stays solid, like a shaft.
+    """
     inside = walls.grown(-INNER_WALL)
     middle = (inside.bottom + inside.top) / 2 + rng.uniform(-0.8, 0.8)
     rows = ((inside.bottom, middle - INNER_WALL / 2), (middle + INNER_WALL / 2, inside.top))
@@ -143,7 +162,12 @@ def _core(rng: np.random.Generator, walls: Rect) -> list[Room]:
 def _split(
     rng: np.random.Generator, start: float, stop: float, least: float, most: float
 ) -> list[tuple[float, float]]:
-    """Cut an interval into rooms of widths from ``least`` to ``most``, the last perhaps wider."""
+    """
+    Cut an interval [m] into rooms with inner walls between them; return their (start, end).
+
+    Widths are from ``least`` to ``most``, but the last room may be up to two of width ``least``
+    and a wall wide.
+    """
     pieces = []
     while stop - start > max(most, 2 * least + INNER_WALL):
         longest = min(most, stop - start - INNER_WALL - least)
@@ -154,7 +178,12 @@ def _split(
 
 
 def _doorways(rng: np.random.Generator, corridors: list[Room], rooms: list[Room]) -> list[Rect]:
-    """Return doorways from each room to a corridor (a hall: to each), and a few between rooms."""
+    """
+    Return doorways from rooms to corridors, and a few from room to room.
+
+    A room gets a doorway to the first corridor with which it shares a long enough wall, a hall one
+    to each such corridor. Two rooms that share such a wall get a doorway with probability 0.15.
+    """
     doorways = []
     for room in rooms:
         found = [_doorway(rng, room.rect, corridor.rect) for corridor in corridors]
@@ -168,7 +197,11 @@ def _doorways(rng: np.random.Generator, corridors: list[Room], rooms: list[Room]
 
 
 def _doorway(rng: np.random.Generator, room: Rect, other: Rect) -> Rect | None:
-    """Return an opening in the wall that two rooms share, or None where it is too short."""
+    """
+    Return an opening of random width and place in the wall that two rooms share.
+
+    It is None where they share no wall, or one that is too short for the opening.
+    """
     width = rng.uniform(*DOOR_WIDTHS)
     margin = 0.25
     left, right = max(room.left, other.left), min(room.right, other.right)
@@ -184,7 +217,11 @@ def _doorway(rng: np.random.Generator, room: Rect, other: Rect) -> Rect | None:
 
 
 def _apron(doorway: Rect) -> Rect:
-    """Return the area around a doorway that furniture leaves free, on both sides of the wall."""
+    """
+    Return the rectangle around a doorway that furniture leaves free.
+
+    It reaches ``APRON`` from the wall on both sides, and 0.1 m beyond the doorway along the wall.
+    """
     left, bottom, right, top = doorway
     if right - left > top - bottom:
         return Rect(left - 0.1, bottom - APRON, right + 0.1, top + APRON)
@@ -192,7 +229,12 @@ def _apron(doorway: Rect) -> Rect:
 
 
 def _leaf(rng: np.random.Generator, doorway: Rect, corridors: list[Room]) -> Rect:
-    """Return the leaf of a door that is open at a right angle, never into a corridor."""
+    """
+    Return the rectangle of a door's leaf that stands open at a right angle to the wall.
+
+    It stands above or to the right of the wall, or on the other side where it would meet a
+    corridor.
+    """
     left, bottom, right, top = doorway
     thick = 0.05
     if right - left > top - bottom:
@@ -207,14 +249,22 @@ def _leaf(rng: np.random.Generator, doorway: Rect, corridors: list[Room]) -> Rec
 
 
 def _cut_corner(material: NDArray[np.uint8], room: Rect, length: float) -> None:
-    """Cut off the upper right corner of a room by a slanting wall."""
+    """
+    Make the upper right corner of a room solid, in place, so that a slanting wall cuts it off.
+
+    The wall meets both sides of the room at ``length`` [m] from the corner.
+    """
     rows, columns = np.ogrid[: material.shape[0], : material.shape[1]]
     missing = room.right + room.top - (rows + columns + 1) * CELL
     material[(missing < length) & (columns * CELL > room.left)] = SOLID
 
 
 def _windows(rng: np.random.Generator, rooms: list[Room]) -> list[Rect]:
-    """Return panes of glass in the outer walls of the south and north; some rooms have none."""
+    """
+    Return panes of glass in the outer walls in the south and north.
+
+    A room has at most one in each of the two walls that it touches, each with probability 0.5.
+    """
     panes = []
     for room in rooms:
         left, bottom, right, top = room.rect

@@ -29,7 +29,7 @@ LEG = 0.035
 
 
 class Disc(NamedTuple):
-    """A round object [m]."""
+    """Round object: its centre (x, y) and its radius [m]."""
 
     x: float
     y: float
@@ -37,7 +37,7 @@ class Disc(NamedTuple):
 
 
 class Group(NamedTuple):
-    """Objects that stand together, and the rectangle around them."""
+    """Objects that stand together, and the rectangle around all of them [m]."""
 
     outline: Rect
     things: tuple[Rect | Disc, ...]
@@ -50,7 +50,11 @@ Placer = Callable[[float, float], tuple[float, float]]
 
 
 def furnish(rng: np.random.Generator, plan: FloorPlan) -> None:
-    """Draw furniture into the material of the plan, in every room."""
+    """
+    Put random furniture into every room and corridor, by making cells of the material solid.
+
+    The plan's material is changed in place. A group that does not fit is left out.
+    """
     placed = [apron.grown(DOOR_GAP - GAP) for apron in plan.aprons]
     for room in plan.rooms:
         for group in _proposals(rng, room):
@@ -82,7 +86,11 @@ def _draw(plan: FloorPlan, group: Group) -> None:
 
 
 def _proposals(rng: np.random.Generator, room: Room) -> list[Group]:
-    """Return the furniture proposed for a room, the most important first."""
+    """
+    Return random furniture for a room, already placed, in the order in which to try it.
+
+    The groups may overlap each other: which of them fit is decided later.
+    """
     left, bottom, right, top = room.rect
     area = (right - left) * (top - bottom)
     if room.kind == 'corridor':
@@ -106,7 +114,7 @@ def _proposals(rng: np.random.Generator, room: Room) -> list[Group]:
 
 
 def _desk(rng: np.random.Generator) -> Group:
-    """Return a desk along the x axis with its back at y = 0, and a chair before it."""
+    """Return a desk along the x axis with its back at y = 0, and a chair on its other side."""
     length, depth = rng.uniform(1.3, 1.8), rng.uniform(0.7, 0.8)
     seat = rng.uniform(0.4, length - 0.4), depth + rng.uniform(0.1, 0.25)
     outline = Rect(0, 0, length, seat[1] + 0.25)
@@ -139,7 +147,11 @@ def _cabinet(rng: np.random.Generator) -> Group:
 
 
 def _island(rng: np.random.Generator) -> Group:
-    """Return two rows of desks back to back, with chairs on both sides."""
+    """
+    Return a block of two rows of desks back to back, with chairs on its two long sides.
+
+    A row has one or two desks along the x axis, or with probability 0.5 along the y axis.
+    """
     length, depth = rng.integers(1, 3) * 1.6, 1.5
     seats = np.arange(0.8, length, 1.6)
     chairs = [
@@ -155,13 +167,13 @@ def _island(rng: np.random.Generator) -> Group:
 
 
 def _clutter(rng: np.random.Generator) -> Group:
-    """Return one small object: a plant, a bin or a chair."""
+    """Return one small disc of random radius: a plant, a bin or a stool."""
     radius = 0.03 + 0.2 * rng.random() ** 3
     return Group(Rect(0, 0, 2 * radius, 2 * radius), (Disc(radius, radius, radius),))
 
 
 def _conference(room: Rect) -> Group:
-    """Return a table in the middle of a room, as long as the room allows."""
+    """Return a table with chairs in the middle of a room, along its longer side."""
     left, bottom, right, top = room
     group = _table(max(right - left, top - bottom) - 2 * (GAP + 0.5), 1.2)
     group = _turned(group) if top - bottom > right - left else group
@@ -175,7 +187,7 @@ def _small_table(rng: np.random.Generator) -> Group:
 
 
 def _table(length: float, depth: float) -> Group:
-    """Return the legs of a table along the x axis, and chairs on both sides."""
+    """Return the legs of a table along the x axis, and chairs on its two long sides."""
     legs = [Disc(x, y, 0.06) for x in (0.2, length / 2, length - 0.2) for y in (0.6, depth + 0.3)]
     chairs = [
         part
@@ -187,7 +199,7 @@ def _table(length: float, depth: float) -> Group:
 
 
 def _columns(room: Rect) -> list[Group]:
-    """Return round columns that carry the hall's roof."""
+    """Return the eight round columns that carry the roof of a hall."""
     left, bottom, right, top = room
     middles = [
         (left + across * (right - left), bottom + up * (top - bottom))
@@ -199,7 +211,7 @@ def _columns(room: Rect) -> list[Group]:
 
 
 def _at_wall(rng: np.random.Generator, room: Rect, make: Maker) -> Group:
-    """Return a group with its back to one of the four walls, anywhere along it."""
+    """Return a new group with its back to a random wall of the room, at a random place there."""
     group = make(rng)
     wall = rng.integers(4)
     if wall % 2:
@@ -218,7 +230,11 @@ def _at_wall(rng: np.random.Generator, room: Rect, make: Maker) -> Group:
 
 
 def _slide(rng: np.random.Generator, space: float) -> float:
-    """Return a position along a wall; one close to a corner is moved into the corner."""
+    """
+    Return a random position [m] along a wall, from 0 to ``space``.
+
+    A position closer than ``GAP`` to either end becomes that end, so that no gap is left.
+    """
     place = rng.random() * space
     if place < GAP:
         return 0.0
@@ -226,7 +242,7 @@ def _slide(rng: np.random.Generator, space: float) -> float:
 
 
 def _inside(rng: np.random.Generator, room: Rect, make: Maker) -> Group:
-    """Return a group anywhere in a room."""
+    """Return a new group at a random place in a room."""
     group = make(rng)
     left, bottom, right, top = room
     x = left + rng.random() * (right - left - group.outline.right)
@@ -239,12 +255,12 @@ def _moved(group: Group, x: float, y: float) -> Group:
 
 
 def _turned(group: Group) -> Group:
-    """Swap the axes, so that the back is at x = 0."""
+    """Return the group with x and y swapped, so that its back is at x = 0 instead of y = 0."""
     return _mapped(group, lambda px, py: (py, px))
 
 
 def _mirrored(group: Group) -> Group:
-    """Turn by half a turn inside the outline, so that the back is on the far side."""
+    """Return the group after half a turn in its outline: its back is on the opposite side."""
     right, top = group.outline.right, group.outline.top
     return _mapped(group, lambda px, py: (right - px, top - py))
 

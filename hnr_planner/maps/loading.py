@@ -36,5 +36,9 @@ def load_map(path: str | Path) -> OccupancyMap:
 
 
 def is_moving_ai(path: str | Path) -> bool:
-    """Return whether a file is taken for a map of the Moving AI benchmarks, by its suffix."""
+    """
+    Return whether a file is taken for a map of the Moving AI benchmarks.
+
+    Only the suffix decides: ``.map`` in lower or upper case. The file need not exist.
+    """
     return Path(path).suffix.lower() == '.map'

@@ -53,7 +53,13 @@ _OCCUPIED_THRESH, _FREE_THRESH = 0.65, 0.196
 
 
 class MapHeader(NamedTuple):
-    """The YAML part of a map, checked; ``repeated`` has the keys that occur more than once."""
+    """
+    Checked values of the YAML file of a map.
+
+    ``image`` is the path of the image, ``resolution`` the side of a cell [m], ``origin`` the pose
+    (x, y, yaw) of the outer corner of cell [0, 0] in the map frame [m, m, rad]; ``repeated`` has
+    the keys that occur more than once. The other fields enter the formulas of this module.
+    """
 
     image: Path
     mode: str
@@ -72,7 +78,8 @@ def load_map_server(path: Path) -> OccupancyMap:
     Raises
     ------
     MapFileError
-        One of the two cannot be read; the message names the file, the key, the value and the rule.
+        The YAML file or the image cannot be read, or a key is missing or breaks its rule; the
+        message names the file and the reason.
 
     Warns
     -----
@@ -95,7 +102,12 @@ def load_map_server(path: Path) -> OccupancyMap:
 
 
 def _hint(path: Path, image: Path) -> str:
-    """Return a hint at a file beside the YAML file, where a wrong image name may mean it."""
+    """
+    Return a hint, for an error message, at a file that the name of a missing image may mean.
+
+    The file lies beside the YAML file, under the image's name or one that differs in folder, case
+    or suffix only. The hint is empty where there is no such file.
+    """
     name = re.split(r'[\\/]', str(image))[-1]
     beside = [file.name for file in path.parent.glob('*') if file.is_file()]
     similar = [other for other in beside if other.casefold() == name.casefold()]
@@ -112,7 +124,10 @@ def _is_image_like(name: str, stem: str) -> bool:
 
 def save_map(occupancy: OccupancyMap, path: str | Path) -> None:
     """
-    Write a trinary map as a YAML file with a PNG image of the same name beside it.
+    Write a trinary map as the YAML file ``path``, and its image as a PNG file beside that.
+
+    The image has the name of the YAML file with the suffix ``.png``. The map's ``frame`` is not
+    written, since the format has no key for it.
 
     Raises
     ------
@@ -140,7 +155,11 @@ def save_map(occupancy: OccupancyMap, path: str | Path) -> None:
 
 
 def _palette_image(data: NDArray[np.int8]) -> Image.Image:
-    """Draw trinary data with a palette of three greys: two bits a pixel make a small file."""
+    """
+    Return an image of trinary data (rows, cols), whose row 0 becomes the image's top row.
+
+    Its palette has three greys only: two bits a pixel make a small file.
+    """
     index = np.zeros(data.shape, np.uint8)
     for place, value in enumerate(_GREY_OF):
         index[data == value] = place
@@ -150,7 +169,7 @@ def _palette_image(data: NDArray[np.int8]) -> Image.Image:
 
 
 def occupancy_of(pixels: Pixels, header: MapHeader) -> NDArray[np.int8]:
-    """Return the occupancy of each pixel, (rows, cols) from the top of the image."""
+    """Return the occupancy of each pixel (rows, cols), in the order of the pixels' rows."""
     data = _meanings(header)[pixels.thirds]
     if header.mode != 'raw':
         data[pixels.transparent] = UNKNOWN
@@ -158,7 +177,11 @@ def occupancy_of(pixels: Pixels, header: MapHeader) -> NDArray[np.int8]:
 
 
 def _meanings(header: MapHeader) -> NDArray[np.int8]:
-    """Return the occupancy that each grey value means, for the values 0, 1/3, 2/3 .. 255."""
+    """
+    Return the occupancy (766,) that each grey value means, by the grey value in thirds.
+
+    Element k is the occupancy of the grey value k / 3, so that the last one is that of 255.
+    """
     grey = np.arange(3 * 255 + 1) / 3
     if header.mode == 'raw':
         value = np.rint(grey)
@@ -176,12 +199,12 @@ def _meanings(header: MapHeader) -> NDArray[np.int8]:
 
 def read_header(path: Path) -> MapHeader:
     """
-    Read and check the YAML part of a map.
+    Read the YAML file of a map, and check its keys; the image is not read.
 
     Raises
     ------
     MapFileError
-        It cannot be read, or a key is missing or breaks its rule.
+        The file cannot be read, or a key is missing or breaks its rule.
 
     """
     mapping = _read_mapping(path)
@@ -201,7 +224,7 @@ def read_header(path: Path) -> MapHeader:
 
 
 def _read_mapping(path: Path) -> Mapping:
-    """Return the keys and values of a YAML file, or raise MapFileError."""
+    """Return the mapping that a YAML file holds; raise MapFileError where it holds none."""
     try:
         with path.open('rb') as file:
             head = file.read(HEAD)
@@ -219,7 +242,11 @@ def _read_mapping(path: Path) -> Mapping:
 
 
 def _refuse_other_files(path: Path, head: bytes) -> None:
-    """Refuse a file that is recognised as something else, such as the map's image."""
+    """
+    Raise MapFileError where a file's first bytes show that it is no YAML, but an image, say.
+
+    For an image the message names the YAML files of the same name beside it.
+    """
     kind = kind_of(head)
     if kind is None:
         return
@@ -232,7 +259,12 @@ def _refuse_other_files(path: Path, head: bytes) -> None:
 
 
 class _Fields:
-    """Values of one YAML file, each checked against its rule."""
+    """
+    Values of one YAML file, each checked against its rule.
+
+    Every public method raises MapFileError where the key is missing (a missing mode is trinary),
+    or where its value breaks the rule.
+    """
 
     def __init__(self, path: Path, mapping: Mapping) -> None:
         self._path = path

@@ -1,4 +1,4 @@
-"""Memory that this process can still allocate."""
+"""Determine how much memory this process can still allocate."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ GIB = 2**30
 
 def available_memory() -> float:
     """
-    Return the number of bytes that can be allocated; inf where the system has no figure.
+    Return how many bytes this process can still allocate; inf where the system has no figure.
 
     It is the least of what the machine has free and what two limits leave: that of the control
     group (a container) and that of the address space (``ulimit -v``).
@@ -20,7 +20,7 @@ def available_memory() -> float:
 
 
 def in_words(n_bytes: float) -> str:
-    """Return a number of bytes in GiB, or in MiB below that."""
+    """Return a number of bytes as text: in GiB from 1 GiB on, else in MiB."""
     return f'{n_bytes / GIB:.1f} GiB' if n_bytes >= GIB else f'{n_bytes / 2**20:.0f} MiB'
 
 
@@ -33,7 +33,12 @@ def _of_the_machine() -> float:
 
 
 def _of_the_control_group() -> float:
-    """Return what the limits of this control group (version 2) and of those around it leave."""
+    """
+    Return how many bytes the memory limits of control groups (version 2) leave.
+
+    It is the least of this process's group and of all groups around it; inf where none
+    has a limit.
+    """
     name = _read('/proc/self/cgroup').strip().rpartition('::')[2]
     root = Path('/sys/fs/cgroup')
     folder = root / name.lstrip('/')
@@ -48,7 +53,7 @@ def _of_the_control_group() -> float:
 
 
 def _reclaimable(group: Path) -> int:
-    """Return the bytes of cached files that the kernel gives up when memory is short."""
+    """Return how many bytes of a group's cached files the kernel gives up when memory is short."""
     words = [line.split() for line in _read(group / 'memory.stat').splitlines()]
     return sum(int(value) for name, value in words if name == 'inactive_file')
 

@@ -30,7 +30,7 @@ from hnr_planner.maps.errors import MapFileError
 from hnr_planner.maps.occupancy import FREE, OccupancyMap, OCCUPIED
 import numpy as np
 
-#: Terrain that is free; all other is occupied.
+#: Characters of free cells; a cell with any other character is occupied.
 PASSABLE = b'.GS'
 _MEANINGS = np.full(256, OCCUPIED, np.int8)
 _MEANINGS[list(PASSABLE)] = FREE
@@ -38,12 +38,16 @@ _MEANINGS[list(PASSABLE)] = FREE
 
 def load_moving_ai(path: Path) -> OccupancyMap:
     """
-    Read a ``.map`` file: cells of side 1, origin 0.
+    Read a ``.map`` file of type octile as an occupancy map.
+
+    The format states no lengths: a cell has a side of 1 m, and the outer corner of cell [0, 0]
+    is at (0, 0) of the map frame, with yaw 0.
 
     Raises
     ------
     MapFileError
-        The file cannot be read; the message names the key, the value and the rule.
+        The file cannot be opened or breaks a rule of the format; the message names the file and
+        the reason.
 
     """
     try:
@@ -66,7 +70,12 @@ def load_moving_ai(path: Path) -> OccupancyMap:
 
 
 def _split(path: Path, lines: list[bytes]) -> tuple[dict[bytes, bytes], list[bytes]]:
-    """Return the header's keys, and the rows without blanks and empty lines at their ends."""
+    """
+    Split the lines of a file into the header's values by key, and the rows of cells.
+
+    Blanks at the end of a row and empty lines after the last row are removed. MapFileError is
+    raised where the line ``map`` is missing.
+    """
     header: dict[bytes, bytes] = {}
     for number, line in enumerate(lines, start=1):
         key, *values = line.split(maxsplit=1)[:2] or [b'']

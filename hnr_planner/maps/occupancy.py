@@ -1,4 +1,4 @@
-"""The occupancy grid that map files hold, that nodes receive, and that planners are given."""
+"""The occupancy grid with its place in the world: what map files hold and planners receive."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-#: Values of cells, in percent; -1 has no meaning as a chance.
+#: Values of cells: the chance in percent that a cell is occupied, and -1 where it is unknown.
 FREE, OCCUPIED, UNKNOWN = 0, 100, -1
 
 
@@ -36,7 +36,11 @@ class OccupancyMap:
     frame: str = 'map'
 
     def is_same_as(self, other: OccupancyMap | None) -> bool:
-        """Return whether another map has the same cells at the same place in the same frame."""
+        """
+        Return whether another map has the same cells at the same place in the same frame.
+
+        Resolution, origin and frame have to be exactly equal. It is False for None.
+        """
         return (
             other is not None
             and (self.resolution, self.origin, self.frame)
@@ -45,6 +49,6 @@ class OccupancyMap:
         )
 
     def __str__(self) -> str:
-        """Return size, resolution and frame in words."""
+        """Return the size in cells, the resolution and the frame in words."""
         rows, cols = self.data.shape
         return f"{cols} x {rows} cells of {self.resolution:g} m in frame '{self.frame}'"

@@ -39,7 +39,7 @@ Bytes: TypeAlias = NDArray[np.int8]
 
 class Pixels(NamedTuple):
     """
-    Some rows of an image, from the top.
+    Consecutive rows of an image, the uppermost first.
 
     ``thirds`` (rows, cols) uint16 in 0..765 is the sum of the three colour channels, so the grey
     value in thirds: the mean of the channels need not be whole, and is exact like this.
@@ -59,7 +59,7 @@ def read_cells(path: Path, meaning: Callable[[Pixels], Bytes]) -> Bytes:
     path : Path
         The image file.
     meaning : callable
-        The value of each pixel, given ``Pixels``; a function of the single pixel.
+        Returns the values (rows, cols) of ``Pixels``; each may depend on its own pixel only.
 
     Returns
     -------
@@ -71,8 +71,8 @@ def read_cells(path: Path, meaning: Callable[[Pixels], Bytes]) -> Bytes:
     OSError
         The file cannot be opened.
     ValueError
-        It is not an image in one of these formats, is truncated, holds no pixel, or needs more
-        memory than there is.
+        The file is not an image in one of these formats, is truncated, holds no pixel, or needs
+        more memory than is available.
 
     """
     with path.open('rb') as file:
@@ -98,13 +98,13 @@ def read_cells(path: Path, meaning: Callable[[Pixels], Bytes]) -> Bytes:
 
 
 def _require_memory(image: Image) -> None:
-    """Refuse an image that needs more memory than there is, before it is decoded."""
+    """Raise ValueError where decoding an image would need more memory than is available."""
     if memory_needed(image) > available_memory():
         raise ValueError(_too_large(image))
 
 
 def memory_needed(image: Image) -> int:
-    """Return how many bytes reading an image takes: decoded, and its cells."""
+    """Return how many bytes reading an image takes: the decoded image, its cells and buffers."""
     width, height = image.size
     return width * height * (_PIXEL_BYTES.get(image.mode, 4) + 1) + _BESIDES
 
@@ -118,7 +118,7 @@ def _too_large(image: Image) -> str:
 
 
 def _cells(image: Image, meaning: Callable[[Pixels], Bytes]) -> Bytes:
-    """Return the meaning of each pixel of a decoded image, last row first."""
+    """Return the value of each pixel (rows, cols) of a decoded image, its last row first."""
     has_table = image.mode in ('L', 'P') or (
         image.mode == '1' and 'transparency' not in image.info
     )
@@ -136,7 +136,12 @@ def _cells(image: Image, meaning: Callable[[Pixels], Bytes]) -> Bytes:
 
 
 def _by_table(image: Image, meaning: Callable[[Pixels], Bytes]) -> Callable[[Image], Bytes]:
-    """Return a fast conversion for 8 bits a pixel: the meaning of each value, looked up."""
+    """
+    Return a fast function from a strip of an image to its values (rows, cols).
+
+    It looks up the value of each of the 256 bytes that a pixel may have; the image has to be of
+    mode L, P or 1.
+    """
     every = image.crop((0, 0, 256, 1)) if image.mode != '1' else new('L', (256, 1))
     every.putdata(range(256))
     table = meaning(_pixels(every))[0]
@@ -152,14 +157,18 @@ def _is_deep(image: Image) -> bool:
 
 
 def _deep_grey(image: Image) -> Pixels:
-    """Reduce 16 bits to 8; Pillow itself would clip them, and lose what is transparent."""
+    """
+    Return the pixels of a grey image of 16 bits, with values scaled from 0..65535 to 0..255.
+
+    Pillow's own conversion would clip the values, and lose which of them is transparent.
+    """
     values = np.asarray(image).astype(np.int64)
     transparent = values == image.info.get('transparency', -1)
     return Pixels((3 * ((values + 128) // 257)).astype(np.uint16), transparent)
 
 
 def _colour(image: Image) -> Pixels:
-    """Return the sums of the colour channels, and where alpha is below its maximum."""
+    """Return the pixels of an image of 8 bits a channel, with or without alpha."""
     channels = np.asarray(image.convert('RGBA'))
     red, green, blue, alpha = np.moveaxis(channels, -1, 0)
     return Pixels(red.astype(np.uint16) + green + blue, alpha < 255)

@@ -2,9 +2,10 @@
 The rectangular spiral: a corridor that winds from a corner of a square into its centre.
 
 The paper's experiment with positions only (its section "Planning") plans through a spiral whose
-arms it makes wider or narrower, and says that a fatter middle part hurts RRT alone. It does not
-give the geometry; ours starts at the bottom left, goes up first, turns right at every corner and
-ends where the next arm would be shorter than it is wide. What is left in the centre is solid.
+arms it makes wider or narrower, and says that a fatter middle part hurts RRT alone. The paper does
+not give the geometry; this spiral starts at the bottom left, goes up first, turns right at every
+corner and ends where the next arm would be shorter than it is wide. What is left in the centre is
+solid.
 """
 
 from __future__ import annotations
@@ -17,7 +18,12 @@ import numpy as np
 
 
 class _Arm(NamedTuple):
-    """One straight piece [cells]: its rectangle, width and direction."""
+    """
+    One straight piece of the corridor, in cells of the grid, whose row 0 is at the bottom.
+
+    ``rows`` and ``columns`` are its rectangle, ``width`` is measured across it, and ``heading`` is
+    the direction from the corridor's start to its goal.
+    """
 
     rows: slice
     columns: slice
@@ -34,7 +40,9 @@ def spiral(
     middle_width: float | None = None,
 ) -> Corridor:
     """
-    Build the spiral corridor.
+    Build the spiral corridor, with a request from its outer to its inner end.
+
+    The radius of the goal region is half the width of the last arm.
 
     Parameters
     ----------
@@ -44,13 +52,14 @@ def spiral(
         Side of a cell, thickness of the walls, and side of the square, its outer walls
         included [m].
     middle_width : float, optional
-        Width of the arm in the middle of the corridor's sequence of arms [m]: the family that
-        is harder for RRT. None gives all arms the same width.
+        Width of the arm in the middle of the corridor's sequence of arms [m]; a wider one makes
+        the corridor harder for RRT. None gives all arms the same width.
 
     Raises
     ------
     ValueError
-        A length is not a finite number of at least half a cell, or the square is too small.
+        A length is not finite or not larger than half a cell, or the arms do not fit into the
+        square.
 
     """
     if not 0 < resolution < math.inf:
@@ -86,9 +95,10 @@ def _cells(name: str, length: float, resolution: float) -> int:
 
 def _with_fat_middle(side: int, wall: int, width: int, middle_width: int) -> list[_Arm]:
     """
-    Return the arms with the middle one fatter, none where that does not fit.
+    Return the arms, the middle one of another width; an empty list where that does not fit.
 
-    A fatter arm leaves place for fewer arms, so which one is in the middle has to be looked for.
+    All lengths are in cells. A fatter arm leaves place for fewer arms, so which one is in the
+    middle has to be looked for.
     """
     plain = len(_wind(side, wall, [width] * side))
     for middle in range(plain // 2, 0, -1):
@@ -101,7 +111,12 @@ def _with_fat_middle(side: int, wall: int, width: int, middle_width: int) -> lis
 
 
 def _wind(side: int, wall: int, widths: list[int]) -> list[_Arm]:
-    """Lay arms of the given widths along the inside of what is left, until none fits."""
+    """
+    Lay arms of the given widths one after the other, and return those that fit.
+
+    All lengths are in cells. Each arm turns right from the arm before it, and runs along the edge
+    of the part of the square that earlier arms and their walls leave.
+    """
     bottom, top, left, right = wall, side - wall, wall, side - wall
     arms: list[_Arm] = []
     behind = 0  # cells to go back so that an arm opens into the one before it
@@ -127,7 +142,11 @@ def _wind(side: int, wall: int, widths: list[int]) -> list[_Arm]:
 
 
 def _end(arm: _Arm, resolution: float) -> tuple[float, float]:
-    """Return the point in the middle of the corridor, half its width before the arm's end."""
+    """
+    Return the point (x, y) [m] midway between the arm's sides, half its width before its end.
+
+    The end is the one that the arm's heading points to.
+    """
     row = (arm.rows.start + arm.rows.stop) / 2
     column = (arm.columns.start + arm.columns.stop) / 2
     if arm.heading == 0:

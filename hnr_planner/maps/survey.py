@@ -24,18 +24,23 @@ NOISE = 0.04
 DRIFT = (0.025, 0.025, 0.004)
 #: Fraction of the rays that a pane of glass stops.
 SEES_GLASS = 0.97
-#: Fraction of a cell's rays that have to end in it to make it occupied.
+#: A cell is occupied when more than this fraction of the rays that reached it ended in it.
 HIT_SHARE = 0.25
-#: Distance between two positions of the scanner [m].
+#: Approximate distance between neighbouring positions of the scanner in a room [m].
 SPACING = 1.9
-#: Half of the side of the square that the scanner needs [m].
+#: Half the side of the square around the scanner that has to be air [m].
 ROOM_TO_STAND = 0.4
 
 
 def survey(
     rng: np.random.Generator, plan: FloorPlan, resolution: float, margin: float
 ) -> OccupancyMap:
-    """Return the map of a survey, with ``margin`` [m] around the building."""
+    """
+    Return the map that a simulated survey of a floor plan gives.
+
+    Its cells have the side ``resolution`` [m], and it reaches ``margin`` [m] beyond the building
+    on every side. The building's lower left corner is the map frame's (0, 0).
+    """
     sides = np.array(plan.material.shape) * CELL + 2 * margin
     height, width = (round(side / resolution) for side in sides)
     hits = np.zeros(height * width, np.int64)
@@ -57,7 +62,11 @@ def survey(
 
 
 def _places(rng: np.random.Generator, plan: FloorPlan) -> list[NDArray[np.floating]]:
-    """Return the positions of the scanner: a perturbed lattice in every room, off furniture."""
+    """
+    Return the positions (x, y) [m] of the scanner: a perturbed lattice in every room.
+
+    Positions closer than ``ROOM_TO_STAND`` in x and in y to anything but air are left out.
+    """
     places: list[NDArray[np.floating]] = []
     for room in plan.rooms:
         left, bottom, right, top = room.rect.grown(-0.6)
@@ -81,7 +90,13 @@ def _scan(
     place: NDArray[np.floating],
     step: float,
 ) -> tuple[NDArray[np.floating], NDArray[np.floating]]:
-    """Return the points (k, 2) where rays ended, and those (m, 2) that they went through."""
+    """
+    Simulate one scan from ``place`` [m]; return where rays ended (k, 2) and went through (m, 2).
+
+    Both are points [m] as the survey records them: with the errors of the estimated pose, and the
+    ends with noise in range. Points that a ray went through are ``step`` [m] apart; a ray that
+    nothing stopped within ``RANGE`` has no end.
+    """
     angles = (np.arange(RAYS) + rng.random()) * (2 * np.pi / RAYS)
     ranges = (np.arange(round(RANGE / step)) + 0.5) * step
     met = _material_at(material, _along(place, angles, ranges))
@@ -101,13 +116,17 @@ def _scan(
 def _along(
     place: NDArray[np.floating], angles: NDArray[np.floating], ranges: NDArray[np.floating]
 ) -> NDArray[np.floating]:
-    """Return the points (rays, steps, 2) of rays from a place, at common or own ranges."""
+    """
+    Return the points (rays, steps, 2) [m] at the given ranges along rays from a place.
+
+    ``angles`` is (rays,) [rad]. ``ranges`` [m] is (steps,), for all rays, or (rays, steps).
+    """
     directions = np.stack([np.cos(angles), np.sin(angles)], axis=1)
     return place + directions[:, None, :] * ranges[..., None]
 
 
 def _material_at(material: NDArray[np.uint8], points: NDArray[np.floating]) -> NDArray[np.uint8]:
-    """Return the material at points (..., 2); outdoors there is air."""
+    """Return the material at points (..., 2) [m]; outside the grid of materials it is AIR."""
     columns, rows = np.moveaxis(np.floor(points / CELL).astype(int), -1, 0)
     height, width = material.shape
     inside = (columns >= 0) & (columns < width) & (rows >= 0) & (rows < height)

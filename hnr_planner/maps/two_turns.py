@@ -2,8 +2,8 @@
 Corridors with two turns, for robots with inertia: a serpentine and a Z.
 
 The paper's kinematic experiment drives through a corridor with two turns and does not give its
-geometry. These two are as different as such corridors can be: in the serpentine the way turns
-back twice, in the Z it never leads away from the goal.
+geometry. These two are as different as such corridors can be: in the serpentine the robot
+turns back twice, in the Z it never drives away from the goal.
 """
 
 from __future__ import annotations
@@ -19,7 +19,13 @@ RESOLUTION = 0.05
 
 
 def serpentine(width: float) -> Corridor:
-    """Build three arms of a width [m] side by side, each open to the next at one end."""
+    """
+    Build a serpentine: three horizontal arms of a width [m], one above the other.
+
+    The lower and the middle arm are joined at the right, the middle and the upper at the left; the
+    request leads from the lower left to the upper right. ValueError is raised for a width below
+    ``RESOLUTION`` or above half of ``ARM``.
+    """
     _check_width(width, most=ARM / 2)
     pitch = width + WALL
     free = _solid(ARM, 3 * pitch - WALL)
@@ -31,7 +37,12 @@ def serpentine(width: float) -> Corridor:
 
 
 def zigzag(width: float) -> Corridor:
-    """Build a Z of a width [m] in a square: to its middle, up through it, on to the corner."""
+    """
+    Build a Z in a square: from the lower left to the middle, up, and on to the upper right.
+
+    ``width`` [m] is that of all three arms. ValueError is raised for a width below ``RESOLUTION``
+    or above a third of ``SQUARE``.
+    """
     _check_width(width, most=SQUARE / 3)
     free = _solid(SQUARE, SQUARE)
     near, far = (SQUARE - width) / 2, (SQUARE + width) / 2
@@ -51,7 +62,11 @@ def _solid(width: float, height: float) -> NDArray[np.bool_]:
 
 
 def _open(free: NDArray[np.bool_], x: float, y: float, width: float, height: float) -> None:
-    """Make a rectangle [m] free."""
+    """
+    Make a rectangle of the grid free, in place.
+
+    (x, y) is its lower left corner; all lengths are in metres, and its sides are rounded to cells.
+    """
     left, low = round(x / RESOLUTION), round(y / RESOLUTION)
     right, high = round((x + width) / RESOLUTION), round((y + height) / RESOLUTION)
     free[low:high, left:right] = True

@@ -19,7 +19,8 @@ from typing import Any, NamedTuple
 
 import yaml
 
-#: A scalar as text (None for a plain null), a sequence of such, or what else a node is, in words.
+#: Value of a node: a scalar as text (None for a plain null), or a list or dict of scalars, in
+#: which ``...`` stands for a nested list or mapping.
 Value = str | None | list[Any] | dict[str, Any]
 
 #: PyYAML without libyaml still reads most files, but none with tabs.
@@ -47,11 +48,16 @@ _TRUE, _FALSE = ('y', 'yes', 'true', 'on'), ('n', 'no', 'false', 'off')
 
 
 class YamlError(ValueError):
-    """The text is no YAML; the message says where, in one line."""
+    """Error that a file is not valid YAML; the message, of one line, says what and where."""
 
 
 class Mapping(NamedTuple):
-    """The first document of a YAML file: values by key, and the keys that occur repeatedly."""
+    """
+    Mapping that a YAML file holds as its first document.
+
+    ``values`` has the value of each key, the first one where the key occurs repeatedly;
+    ``repeated`` has the names of the keys that do.
+    """
 
     values: dict[str, Value]
     repeated: tuple[str, ...]
@@ -59,17 +65,18 @@ class Mapping(NamedTuple):
 
 def read_document(content: bytes) -> Mapping | Value:
     """
-    Parse the first document of a file.
+    Parse the first document of a YAML file, given the file's bytes.
 
     Returns
     -------
     Mapping or Value
-        The document; of a key that occurs repeatedly the first value.
+        A ``Mapping`` where the document is a YAML mapping, else its text or list; None where it
+        is a plain null, or the file holds no document.
 
     Raises
     ------
     YamlError
-        When it is no YAML.
+        When ``content`` is not valid YAML.
 
     """
     try:
@@ -103,7 +110,7 @@ def prepared(content: bytes) -> str:
 
 
 def as_number(value: Value) -> float | None:
-    """Return a scalar as yaml-cpp converts it to a double; None where it is no finite number."""
+    """Return the double that yaml-cpp converts a scalar to; None if it is no finite number."""
     if not isinstance(value, str) or not _NUMBER.fullmatch(value.rstrip()):
         return None
     number = float(value)
@@ -111,7 +118,12 @@ def as_number(value: Value) -> float | None:
 
 
 def as_flag(value: Value) -> bool | None:
-    """Return a scalar as map_server reads a flag: an integer or a boolean; None where neither."""
+    """
+    Return the truth of a scalar as map_server reads a flag.
+
+    An integer is true unless it is 0; y, yes, true and on are true, n, no, false and off are
+    false, all in lower case, in upper case or capitalised. It is None for anything else.
+    """
     if not isinstance(value, str):
         return None
     whole = _WHOLE.fullmatch(value.rstrip())
@@ -123,14 +135,18 @@ def as_flag(value: Value) -> bool | None:
 
 
 def as_file_name(value: Value) -> str | None:
-    """Return a scalar as a name of a file, whatever its encoding; None where it cannot be one."""
+    """
+    Return a scalar as the name of a file, with bytes in any encoding.
+
+    It is None where the value is no text, is blank, or contains a null character.
+    """
     if not isinstance(value, str) or not value.strip() or '\0' in value:
         return None
     return os.fsdecode(value.encode('utf-8', 'surrogateescape'))
 
 
 def shown(value: Value) -> str:
-    """Return a value as it fits into a message of one line."""
+    """Return a value as text for a message: in one line, cut to at most 60 characters."""
     if isinstance(value, list):
         text = f'[{", ".join(map(shown, value))}]'
     elif isinstance(value, dict):
@@ -141,7 +157,11 @@ def shown(value: Value) -> str:
 
 
 def _value(node: Any, depth: int = 1) -> Value:
-    """Return a node as text and lists, one level deep: aliases may make a tree endless."""
+    """
+    Return a node as text, None for a plain null, or a list or dict of its items.
+
+    Items that are lists or mappings themselves are ``...``, since aliases may make a tree endless.
+    """
     if node is None:
         return None
     if isinstance(node, yaml.ScalarNode):
@@ -155,7 +175,11 @@ def _value(node: Any, depth: int = 1) -> Value:
 
 
 def _text(raw: str) -> str:
-    """Return parsed text with the hidden bytes restored; bytes not UTF-8 become surrogates."""
+    """
+    Return parsed text, its bytes restored that ``prepared`` moved to Unicode's private area.
+
+    Bytes that are not UTF-8 become surrogates, as ``surrogateescape`` writes them.
+    """
     parts = (
         bytes([_SHOWN[ord(char)]]) if ord(char) in _SHOWN else char.encode('utf-8', 'replace')
         for char in raw
@@ -164,10 +188,10 @@ def _text(raw: str) -> str:
 
 
 def _printable(text: str) -> str:
-    """Return text with the bytes that are not UTF-8 escaped."""
+    """Return text whose surrogates, for bytes that are not UTF-8, are backslash escapes."""
     return text.encode('utf-8', 'surrogateescape').decode('utf-8', 'backslashreplace')
 
 
 def _quoted(text: str) -> str:
-    """Return a scalar for a message, in quotes where it is blank or not printable."""
+    """Return the text of a scalar for a message, in quotes where it is blank or not printable."""
     return text if text.strip() and text.isprintable() else repr(_printable(text))

@@ -1,4 +1,4 @@
-"""Write map and searches into the page."""
+"""Write a map and searches on it into an HTML page."""
 
 from __future__ import annotations
 
@@ -38,14 +38,14 @@ ABOUT = {entry.name: f'{entry.summary[:1].upper()}{entry.summary[1:]}.' for entr
 
 class Shown(NamedTuple):
     """
-    A search on the page.
+    A search on the page: its result, and whether it is shown at first.
 
     Attributes
     ----------
     result : PlanResult
         The result of the search.
     asked : bool
-        Whether it is shown when the page opens.
+        Whether the search is shown when the page opens.
 
     """
 
@@ -67,24 +67,24 @@ def write_page(
     options: Sequence[str] = (),
 ) -> None:
     """
-    Write a page of one request and the searches for it.
+    Write an HTML page that shows one request and the searches for it.
 
     Parameters
     ----------
     file : Path
         The HTML file to write.
     title : str
-        Its heading, such as the name of the map.
+        Heading of the page, such as the name of the map.
     occupancy, space
         The map, and the robot's free space on it.
     start, goal : (2,)
-        Ends of the request [m].
+        Start and goal of the request in the map frame [m].
     searches : sequence of Shown
         At least one, at most as many as there are ``COLOURS``.
     goal_radius : float
-        Radius of the goal region [m], which is drawn.
+        Radius of the goal region around the goal [m], which the page draws.
     simplify : bool
-        Whether the paths were to be shortened.
+        Whether the searches were asked to shorten their paths.
     options : sequence of str
         Further options of the request, as phrases.
 
@@ -115,7 +115,12 @@ def write_page(
 
 
 def _map(occupancy: OccupancyMap, kinds: NDArray[np.uint8]) -> dict[str, Any]:
-    """Return the map: an image of the kinds of cells, row 0 first, with resolution and origin."""
+    """
+    Return the page's data of the map.
+
+    They are a PNG image of the kinds of cells, its top row being row 0 of the map, the resolution
+    [m], the origin (x, y, yaw) [m, m, rad], and the box around the known cells [m].
+    """
     image = Image.fromarray(kinds, mode='P')
     colours = np.round(255 * np.array([to_rgb(colour) for _, colour in KINDS]))
     image.putpalette(colours.astype(np.uint8).tobytes())
@@ -130,7 +135,7 @@ def _map(occupancy: OccupancyMap, kinds: NDArray[np.uint8]) -> dict[str, Any]:
 
 
 def _search(space: GridSpace, shown: Shown, colour: str) -> dict[str, Any]:
-    """Return the data of one search."""
+    """Return the page's data of one search, drawn in ``colour``; lengths are in metres."""
     result = shown.result
     found = path_as_found(result)
     samples, parents = result.samples[:MOST_SAMPLES], result.parents[:MOST_SAMPLES]
@@ -160,10 +165,11 @@ def _search(space: GridSpace, shown: Shown, colour: str) -> dict[str, Any]:
 
 def path_as_found(result: PlanResult) -> NDArray[np.float64]:
     """
-    Return the path (m, 2) [m] that the search on the page found, before it was shortened.
+    Return the path (m, 2) [m] that the search on the page found first, before shortening.
 
-    It is empty where there is none, and where the first solution is another search's than the one
-    whose samples the result has, which ``optimize_for`` may bring about.
+    The array is (0, 2) where no path was found, and where a vertex of the first path between its
+    ends is not among the samples of the result: then another search has found that path, as
+    ``optimize_for`` may bring about.
     """
     first, nothing = result.first_solution, np.empty((0, 2))
     if first is None:
@@ -176,7 +182,12 @@ def path_as_found(result: PlanResult) -> NDArray[np.float64]:
 def _chords(
     space: GridSpace, planner: str, samples: NDArray, parents: NDArray
 ) -> NDArray[np.float64]:
-    """Return the ends (k, 4) of the chord that each sample was drawn on; roots have none."""
+    """
+    Return the ends (x, y, x, y) [m] of the chord that each sample was drawn on.
+
+    The array is (k, 4) for k samples, with zeros for roots of trees, which have no chord. It is
+    (0, 4) for planners other than Hit-and-Run.
+    """
     if not planner.startswith('hit_and_run'):
         return np.empty((0, 4))
     ends = np.zeros((len(samples), 4))
@@ -188,6 +199,6 @@ def _chords(
 
 
 def _packed(array: NDArray, kind: type[np.generic]) -> str:
-    """Return an array as text for the browser: little-endian, base64."""
+    """Return an array's elements as text for the browser: type ``kind``, little-endian, base64."""
     little = np.dtype(kind).newbyteorder('<')
     return base64.b64encode(np.ascontiguousarray(array, dtype=little).tobytes()).decode()
