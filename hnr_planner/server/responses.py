@@ -118,7 +118,7 @@ class PlanResponse(Response):
 
     @property
     def path(self) -> NDArray[np.float64]:
-        """Vertices (m, 2) of the path in the map's frame [m]; none unless solved."""
+        """Vertices (m, 2) of the path in the map's frame [m]; (0, 2) unless solved."""
         if self.solved and self.result is not None:
             return self.result.path
         return np.empty((0, 2))

@@ -40,7 +40,7 @@ class Dispatched(Protocol):
         """Run the kernel for the type of the first argument, interpreted in any mode."""
 
     def interpreted_form(self, *arguments: Any) -> Any:
-        """Call the interpreted form of that kernel, as other interpreted forms do."""
+        """Call the interpreted form of the kernel for the type of the first argument."""
 
     def kernel_for(self, first: Any) -> Kernel:
         """Return the kernel for the type of ``first``, or the default if none is registered."""

@@ -197,7 +197,7 @@ class Kernel(CPUDispatcher):
 
     @cached_property
     def interpreted_form(self) -> Callable[..., Any]:
-        """The interpreted form of this kernel, which other interpreted forms call."""
+        """This kernel as Python with the arithmetic of machine code; it calls such forms only."""
         return interpreted_form(self.py_func)  # type: ignore[arg-type]
 
     def interpreted(self, *arguments: Any, **_keywords: Any) -> Any:

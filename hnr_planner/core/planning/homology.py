@@ -29,7 +29,7 @@ class Islands(NamedTuple):
     Attributes
     ----------
     x, y : (k,)
-        Coordinates of the points, kernel frame.
+        Coordinates of the points in the kernel frame of their space (``Space.to_kernel``).
     numbers : (k,) int64
         Number of each island. It is added to the signature of a path that crosses, to the right,
         the ray that goes up from the island's point, and subtracted for a crossing to the left.

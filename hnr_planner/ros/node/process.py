@@ -167,7 +167,7 @@ class _StopSignal:
         os.write(self._writer, b'\0')
 
     def wait(self) -> None:
-        """Return after the first signal or ``request`` since ``wait_for_owner``; wait for one."""
+        """Wait for a signal or a ``request``; return at once if there was one already."""
         os.read(self._reader, 1)
 
 

@@ -1,5 +1,8 @@
 """
-Cones: the search nodes of Polyanya on slabs, and the heap of those that are open.
+Cones: the search nodes of ``polyanya``, and the heap of those that are open.
+
+Slabs are rectangles of free cells, and portals the intervals along which two slabs meet
+(``spaces.grid.slabs``).
 
 A node is a root, the last corner at which the path bends, and the interval of a portal that is
 visible from the root: the cone between two bounds, through that portal into the next slab. Corners

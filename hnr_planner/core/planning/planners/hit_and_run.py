@@ -32,7 +32,7 @@ class HitAndRun:
 
 @dataclass
 class HitAndRunSearch:
-    """Search by one chain of Hit-and-Run steps; a transition is one step."""
+    """Search by one chain of Hit-and-Run steps; ``iterations`` counts the steps."""
 
     problem: Problem
     rng: Stream

@@ -257,7 +257,7 @@ class GridSpace(FramedSpace):
 
     @cached_property
     def slabs(self) -> Slabs:
-        """Free space as slabs, for exact shortest paths; built when first used."""
+        """Free cells as rectangles, kernel frame, for shortest paths; built when first used."""
         return build_slabs(self.data.free_distance)
 
     @cached_property
