@@ -69,6 +69,11 @@ def _compiled_gate():
     return lambda: 1.0
 
 
+def someone_compiles_gated() -> bool:
+    """Return whether a process has come to the gate."""
+    return any(Path(os.environ['HNR_TEST_GATE']).glob('compiled by *'))
+
+
 @kernel
 def gated(x):
     """Return ``x``; it is compiled once the gate is open."""

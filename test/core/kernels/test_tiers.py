@@ -116,15 +116,15 @@ def note(notice):
     take(notice)
     names.append('workload' if isinstance(notice.about, list) else notice.about.name)
 compilation._background.take = note
-wait(lambda: compilation.status().running)
+wait(samples.someone_compiles_gated)
 samples.total(samples.Pair(1.0, 2.0), 1.0)
+wait(lambda: compilation._background.workloads and compilation._background.messages.empty())
 say('ASKED')
 wait(lambda: compilation.status().compiled >= 4 and not compilation.status().pending)
 say(*names)
 """
     )
     next_line(process, 'ASKED')
-    wait_for_gate(tmp_path)
     (tmp_path / 'open').touch()
     names = output(process)[-1].split()
     assert names[:3] == ['gated', '_total_of_pair', 'workload']
