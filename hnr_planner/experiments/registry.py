@@ -52,6 +52,7 @@ EXPERIMENTS = {
             'kinematics.',
         ),
         ('safety', 'Distance to obstacles along the paths of different planners.'),
+        ('restarts', 'The best path of several runs, against the shortest path.'),
         ('mixing', 'How many steps walks need to forget where they began.'),
         (
             'theory',

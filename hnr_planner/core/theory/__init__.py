@@ -21,6 +21,8 @@ module                    quantity
 ``conductance``           conductance Phi (Section 3.1)
 ``bounds``                the bounds on Phi and on the mixing time (Lemmas 6 to 13)
 ``embedding``             what the bounds need of the image of a disc (Assumption 2)
+``isoperimetry``          both sides of the isoperimetric inequality (Theorem 7)
+``star_shaped``           kernel and image of star-shaped sets, and what they bound (Section 1)
 ``path_length``           transitions of a walk into a goal (Section 1)
 ``rays``, ``corners``     quadrature over directions, and kinks of the boundary
 ========================  =============================================================
@@ -56,6 +58,7 @@ from hnr_planner.core.theory.cross_ratio import cross_ratio_distance, hilbert_di
 from hnr_planner.core.theory.curvature import Curvature, curve_curvature, slice_curvature
 from hnr_planner.core.theory.density import log_ball_volume, transition_density
 from hnr_planner.core.theory.embedding import ball_image, image_boundary
+from hnr_planner.core.theory.isoperimetry import Isoperimetry, isoperimetry
 from hnr_planner.core.theory.links import (
     annulus_sector_links,
     link_diameter,
@@ -67,6 +70,13 @@ from hnr_planner.core.theory.path_length import (
     mixing_estimate,
     mixing_time,
     transitions_bound,
+)
+from hnr_planner.core.theory.star_shaped import (
+    ball_walk_conductance,
+    star_boundary,
+    star_image,
+    star_isoperimetry,
+    star_kernel,
 )
 from hnr_planner.core.theory.step import (
     step_length,
@@ -84,10 +94,12 @@ __all__ = [
     'Curvature',
     'Cut',
     'Estimate',
+    'Isoperimetry',
     'LinkBounds',
     'annulus_sector_links',
     'ball_boundary_ratio',
     'ball_image',
+    'ball_walk_conductance',
     'best_cut',
     'boundary_ratio',
     'cell_flow',
@@ -100,6 +112,7 @@ __all__ = [
     'expected_transitions',
     'hilbert_distance',
     'image_boundary',
+    'isoperimetry',
     'link_diameter',
     'lipschitz_factor',
     'log_ball_volume',
@@ -113,6 +126,10 @@ __all__ = [
     'printed_conductance',
     'ratio_inequality',
     'slice_curvature',
+    'star_boundary',
+    'star_image',
+    'star_isoperimetry',
+    'star_kernel',
     'step_length',
     'step_mean',
     'step_overlap',

@@ -15,6 +15,7 @@ Lemma 6 turns a bound on Phi into a number of steps: ``mixing_bound``.
 from dataclasses import dataclass
 import math
 
+from hnr_planner.core.errors import RequestError
 from hnr_planner.core.theory.boundary_ratio import ball_boundary_ratio
 from hnr_planner.core.theory.density import log_ball_volume
 
@@ -35,9 +36,15 @@ class BallImage:
     diameter : float
         Diameter D_Sigma of the image [m].
     stretch, shrink : float
-        Lipschitz constants of the map (L_Sigma) and of its inverse (L_Omega).
+        Lipschitz constants of the map (L_Sigma) and of its inverse (L_Omega): at least 1, since
+        the map keeps the volume (equation (1)).
     kappa : float
         Curvature of the image (Assumption 3), without unit.
+
+    Raises
+    ------
+    RequestError
+        When a Lipschitz constant is below 1.
 
     """
 
@@ -47,6 +54,12 @@ class BallImage:
     stretch: float = 1.0
     shrink: float = 1.0
     kappa: float = 2.0 * math.pi
+
+    def __post_init__(self) -> None:
+        """Check equation (1); a relative 1e-9 is left to rounding."""
+        for name, value in (('stretch', self.stretch), ('shrink', self.shrink)):
+            if not value >= 1.0 - 1e-9:
+                raise RequestError(f'{name} must be at least 1 (equation (1)), got {value!r}')
 
     @classmethod
     def unit_ball(cls, dim: int) -> 'BallImage':

@@ -12,6 +12,7 @@ from test.core.theory.paths import (
     walks_of,
 )
 from test.core.theory.sets import DISC, L_SET, SQUARE, two_rooms, U_SET
+from test.core.theory.stars import DIVIDED, divided, SMOOTH, smooth, walked
 from test.laws.maps import SPIRAL, TWO_ROOMS
 
 from hnr_planner.core import BallSpace, BoxSpace, GridSpace, ShearedSpace
@@ -25,6 +26,7 @@ from hnr_planner.core.theory import (
     corrected_conductance,
     cross_ratio_distance,
     link_diameter,
+    log_ball_volume,
     mended_conductance,
     mixing_bound,
     polygon_area,
@@ -96,6 +98,28 @@ def bounds():
     yield 'banana, steps', [f'{mixing_bound(value, 2.0, 0.01):.1e}' for value in conductance]
 
 
+def assumptions():
+    volumes = [f'{math.exp(log_ball_volume(n)):.4f}' for n in (2, 12, 13)]
+    yield 'its volume', volumes
+    for name in DIVIDED:
+        sides = divided(name)
+        yield (
+            name,
+            [f'{sides.third:.4f}', f'{sides.expected:.4f}', f'{sides.smaller:.4f}']
+            + [f' {sides.ratio:.2f} '],
+        )
+
+
+def stars():
+    for name in SMOOTH:
+        eta, image, found = smooth(name)
+        yield name, [f'{eta:.3f}', f'{image.stretch:.3f}', f'{image.kappa:.2f}']
+        yield name, [f'{value:.1e}' for value in found]
+    for name, row in (('L', 'L, radius .6'), ('star', 'star, radius 1.2')):
+        eta, local, phi = walked(name)
+        yield row, [f'{eta:.4f}', f'{local:.4f}', f'{phi:.1e}', f'{2 / phi**2:.0e}']
+
+
 def paths():
     for name, problem in (
         ('U, arm to arm', AROUND_THE_U),
@@ -143,7 +167,9 @@ def in_the_paper():
     yield 'plane', [f'{angles[f"loss, n = {dim}"]:.2f}' for dim in (2, 3, 10, 100)]
 
 
-@pytest.mark.parametrize('table', [quantities, conductances, bounds, paths, in_the_paper])
+@pytest.mark.parametrize(
+    'table', [quantities, conductances, bounds, assumptions, stars, paths, in_the_paper]
+)
 def test_the_page_prints_what_the_functions_give(table):
     printed = rows()
     missing = {
