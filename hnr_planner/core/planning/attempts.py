@@ -248,11 +248,6 @@ def _in_caller_s_frame(request: Request, points: Floats) -> Floats:
     return path
 
 
-def straight_length(request: Request) -> float:
-    """Return the straight distance [m] from the start to the goal region: no path is shorter."""
-    return max(math.dist(request.start, request.goal) - request.goal_radius, 0.0)
-
-
 def _lower_bound(request: Request, search: PathSearch) -> float:
     """
     Return a lower bound [m] on the length of free paths from start to goal.
@@ -260,7 +255,7 @@ def _lower_bound(request: Request, search: PathSearch) -> float:
     It is the bound of the search where that has one, and at least the straight distance.
     """
     bound = getattr(search, 'lower_bound', 0.0) * request.space.scale
-    return max(bound, straight_length(request))
+    return max(bound, request.straight_length)
 
 
 def _shortest_path(request: Request, budget: Budget) -> tuple[Floats | None, float]:
@@ -272,7 +267,7 @@ def _shortest_path(request: Request, budget: Budget) -> tuple[Floats | None, flo
     """
     space = request.space
     if not isinstance(space, GridSpace) or request.goal_radius > 0.0:
-        return None, straight_length(request)
+        return None, request.straight_length
     search = Polyanya(space).start(request.problem, request.stream(0))
     status = run(search, budget)
     bound = _lower_bound(request, search)

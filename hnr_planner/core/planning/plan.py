@@ -23,7 +23,6 @@ from hnr_planner.core.planning.attempts import (
     attempt,
     optimize,
     PROVED,
-    straight_length,
     with_clearance,
 )
 from hnr_planner.core.planning.ends import Allowance, check_allowance, move_ends, MovedRequest
@@ -243,7 +242,7 @@ def _result_without_search(
         first = FirstSolution(working_time() - began, path_length(path), path)
         path = with_clearance(request, path, budget)
         length = path_length(path)
-    bound = straight_length(request) if status is PlannerStatus.SOLVED else math.inf
+    bound = request.straight_length if status is PlannerStatus.SOLVED else math.inf
     return PlanResult(
         status=status,
         message=message,
@@ -279,7 +278,7 @@ def _proof(request: Request, best: Attempt) -> str:
 
     It is empty where the bound is no better than the straight distance.
     """
-    if best.lower_bound <= straight_length(request):
+    if best.lower_bound <= request.straight_length:
         return ''
     ratio = path_length(best.path) / best.lower_bound
     if ratio <= PROVED:
