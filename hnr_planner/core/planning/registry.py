@@ -81,6 +81,12 @@ PLANNERS = (
         'RRTConnect',
         'RRT-Connect: RRTs from both ends, each extended towards the new vertices of the other',
     ),
+    PlannerEntry(
+        'polyanya',
+        f'{_PLANNERS}.polyanya',
+        'Polyanya',
+        'on a grid only: the shortest path, exactly, by a search over cones of visible points',
+    ),
 )
 
 #: Names that ``plan`` takes.
