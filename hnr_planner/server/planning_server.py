@@ -49,12 +49,21 @@ class PlanningServer:
         self.searches = RunningSearches()
         self.statistics = Statistics()
 
-    def plan(self, request: PlanRequest, cancel: threading.Event | None = None) -> PlanResponse:
-        """Return the response to ``request``; its search ends when ``cancel`` is set."""
+    def plan(
+        self,
+        request: PlanRequest,
+        cancel: threading.Event | None = None,
+        arrived: float | None = None,
+    ) -> PlanResponse:
+        """
+        Return the response to ``request``; its search ends when ``cancel`` is set.
+
+        ``arrived`` is when the request arrived, by ``time.monotonic`` [s]; now when left out.
+        """
         settings, event = self._settings(), cancel or threading.Event()
         return self._counted(
             event,
-            lambda: respond(request, settings, self._newest_map, event, self._to_frame),
+            lambda: respond(request, settings, self._newest_map, event, self._to_frame, arrived),
             lambda refusal: PlanResponse(refusal.outcome, refusal.why, request),
         )
 

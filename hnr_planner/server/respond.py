@@ -31,6 +31,7 @@ from hnr_planner.server.poses import MOST_POSES, pose_rows
 from hnr_planner.server.requests import check_request, PlanRequest, Pose
 from hnr_planner.server.responses import PlanResponse
 from hnr_planner.server.settings import Settings
+from hnr_planner.server.times import Times
 from hnr_planner.server.trajectories import trajectory_path
 from hnr_planner.server.waiting import NewestMap, wait_for_map
 from hnr_planner.server.waypoints import joined
@@ -60,6 +61,7 @@ def respond(
     newest_map: NewestMap,
     cancel: threading.Event,
     to_frame: ToFrame = only_same_frame,
+    arrived: float | None = None,
 ) -> PlanResponse:
     """
     Plan for ``request`` and return a response that says how planning ended.
@@ -79,30 +81,40 @@ def respond(
     to_frame : callable
         Transforms a pose into the frame whose name it is given, or raises Refusal (BAD_FRAME);
         the name of the pose is put before the words of the refusal.
+    arrived : float, optional
+        When the request arrived, by ``time.monotonic`` [s]; now when left out.
 
     """
-    began, before = time.monotonic(), interpreted_calls()
+    arrived = time.monotonic() if arrived is None else arrived
+    before, times = interpreted_calls(), Times()
     limits = RequestLimits.from_now(settings.time_limit, cancel)
     snapshot = None
     try:
         check_request(request)
-        snapshot = wait_for_map(newest_map, settings.patience, cancel)
-        job = _Job(settings, newest_map, to_frame, limits)
+        with times.phase('map'):
+            snapshot = wait_for_map(newest_map, settings.patience, cancel)
+        job = _Job(settings, newest_map, to_frame, limits, times)
         response = job.plan_for_newest_map(request, snapshot)
     except Refusal as refusal:
         why = refusal.why + (remark_since(before) if limits.hold() else '')
         response = PlanResponse(refusal.outcome, why, request, snapshot=snapshot)
-    return replace(response, elapsed=time.monotonic() - began, tier=tier_since(before))
+    elapsed = time.monotonic() - arrived
+    return replace(response, elapsed=elapsed, times=times, tier=tier_since(before))
 
 
 @dataclass(frozen=True)
 class _Job:
-    """The work for one request; ``limits`` hold for all its searches and checks together."""
+    """
+    The work for one request.
+
+    ``limits`` hold for all its searches and checks together, which add to ``times``.
+    """
 
     settings: Settings
     newest_map: NewestMap
     to_frame: ToFrame
     limits: RequestLimits
+    times: Times
 
     def plan_for_newest_map(self, request: PlanRequest, snapshot: MapSnapshot) -> PlanResponse:
         """
@@ -118,9 +130,12 @@ class _Job:
                 raise self._map_changed()
             if not response.solved:
                 return response
-            newer = self.newest_map()
-            if newer.number == snapshot.number or self._is_still_free(response, newer):
-                return self._finished(replace(response, snapshot=newer), newer)
+            with self.times.phase('map'):
+                newer = self.newest_map()
+                same = newer.number == snapshot.number or self._is_still_free(response, newer)
+            if same:
+                with self.times.phase('message'):
+                    return self._finished(replace(response, snapshot=newer), newer)
             if self.limits.time_is_up:
                 raise self._map_changed()
             snapshot = newer
@@ -178,7 +193,8 @@ class _Job:
             except Refusal as refusal:
                 raise Refusal(refusal.outcome, f'the {name} {refusal.why}') from refusal
 
-        start, *via, goal = (transform(name, pose) for name, pose in request.named_poses)
+        with self.times.phase('map'):
+            start, *via, goal = (transform(name, pose) for name, pose in request.named_poses)
         return replace(request, start=start, via=tuple(via), goal=goal)
 
     def _plan_legs(self, request: PlanRequest, snapshot: MapSnapshot) -> PlanResponse:
@@ -220,6 +236,7 @@ class _Job:
             )
         except RequestError as error:
             raise Refusal(Outcome.BAD_REQUEST, str(error)) from error
+        self.times.add_planning(result)
         return PlanResponse(
             Outcome[result.status.name],
             result.message,
@@ -279,7 +296,7 @@ class _Job:
             Whether ``goal`` stands in for a goal that could not be reached.
 
         """
-        return plan_trajectory(
+        result = plan_trajectory(
             snapshot.space,
             self.settings.system,
             (*request.start.point, 0.0, 0.0),
@@ -289,6 +306,8 @@ class _Job:
             cancel=self.limits.cancel,
             **self.settings.trajectory_arguments(request.algorithm, goal_is_moved=moved),
         )
+        self.times.add_planning(result)
+        return result
 
 
 def _is_still_free(response: PlanResponse, newer: MapSnapshot) -> bool:

@@ -1,8 +1,9 @@
 """Responses to requests for paths and for draws (random points of the free space), as data."""
 
 from abc import ABC, abstractmethod
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 import math
+from typing import Self
 
 from hnr_planner.core import FreeSpaceDraws
 from hnr_planner.core.planning.result import SearchResult
@@ -13,6 +14,7 @@ from hnr_planner.server.outcomes import Outcome
 from hnr_planner.server.path_validity import PlanarPose
 from hnr_planner.server.requests import PlanRequest
 from hnr_planner.server.settings import Settings
+from hnr_planner.server.times import Times
 import numpy as np
 from numpy.typing import NDArray
 
@@ -29,7 +31,9 @@ class Response(ABC):
     why : str
         The outcome in words, with the values that explain it.
     elapsed : float
-        Time from the request to this response [s], by ``time.monotonic``.
+        Time from the arrival of the request to this response [s], by ``time.monotonic``.
+    times : Times
+        Times of the phases of the request.
     tier : str
         'compiled' when machine code did all of the work, 'interpreted' when some of it ran in
         Python because its machine code was not available.
@@ -41,6 +45,7 @@ class Response(ABC):
     outcome: Outcome
     why: str
     elapsed: float = field(default=0.0, kw_only=True)
+    times: Times = field(default_factory=Times, kw_only=True)
     tier: str = field(default='compiled', kw_only=True)
     snapshot: MapSnapshot | None = field(default=None, kw_only=True)
 
@@ -58,6 +63,11 @@ class Response(ABC):
     @abstractmethod
     def algorithm(self) -> str:
         """Name of the planner of a path, or of the random walk of draws."""
+
+    def sent_after(self, seconds: float) -> Self:
+        """Return the response with the time [s] until it was sent added."""
+        times = replace(self.times, message_time=self.times.message_time + seconds)
+        return replace(self, elapsed=self.elapsed + seconds, times=times)
 
     @property
     def values(self) -> dict[str, str]:
@@ -165,7 +175,8 @@ class PlanResponse(Response):
             'seed': str(result.seed),
             'iterations': str(result.iterations),
             'samples': str(len(result.samples)),
-            'planning_time': f'{result.elapsed:.6f}',
+            'planning_time': f'{self.elapsed:.6f}',
+            **{name: f'{n:.6f}' for name, n in asdict(self.times).items()},
             'first_solution_time': f'{first.elapsed if first else math.nan:.6f}',
             'first_solution_length': f'{first.length if first else math.nan:.6g}',
             'length': f'{result.length if self.solved else math.nan:.6g}',

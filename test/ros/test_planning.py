@@ -13,6 +13,7 @@ from test.ros.harness import (
     yaws_of,
 )
 from test.ros.rooms import DATA, GOAL, in_map, ORIGIN, RESOLUTION, START
+import time
 
 from diagnostic_msgs.msg import DiagnosticArray
 from hnr_planner.server.outcomes import Outcome
@@ -96,6 +97,20 @@ def test_samples_markers_path_and_outcome_bear_the_stamp_of_the_answer(client: C
         'start',
         'goal',
     ]
+
+
+def test_outcome_says_where_the_time_went(client: Client) -> None:
+    began = time.monotonic()
+    path = client.plan(pose(*START), pose(*GOAL))
+    round_trip = time.monotonic() - began
+    _, values = client.outcome_of(path)
+    elapsed = float(values['elapsed'])
+    phases = [float(values[f'{name}_time']) for name in ('map', 'search', 'shortening', 'message')]
+    assert min(phases) >= 0.0 and min(phases[1:]) > 0.0
+    assert sum(phases) <= elapsed + 1e-5
+    assert values['planning_time'] == values['elapsed']
+    # What waits for the interpreter after sending counts as sending, up to a limit.
+    assert elapsed - phases[3] <= round_trip
 
 
 def test_two_trees_have_two_roots_start_and_goal(client: Client) -> None:

@@ -1,7 +1,9 @@
 """What is told about answers: the values of an outcome, and the statistics."""
 
-from dataclasses import replace
+from dataclasses import astuple, replace
+from test.server.test_planning_server import REQUEST, server
 from test.server.test_requests import ask, maze, rooms, SETTINGS, store
+import time
 
 from hnr_planner.server.outcomes import Outcome
 from hnr_planner.server.statistics import Statistics
@@ -20,6 +22,22 @@ def test_without_a_path_its_measures_are_not_numbers(outcome: Outcome) -> None:
     values = response.values
     assert [values[name] for name in ('length', 'clearance', 'offset')] == ['nan'] * 3
     assert values['first_solution_length'] == 'nan'
+
+
+def test_times_of_the_phases_add_up_to_the_time_of_a_request() -> None:
+    response = ask(store(rooms()), settings=replace(SETTINGS, optimize_for=0.05))
+    times = response.times
+    assert min(astuple(times)) > 0.0
+    assert sum(astuple(times)) <= response.elapsed
+    sent = response.sent_after(0.5)
+    assert sent.elapsed == response.elapsed + 0.5
+    assert sent.times.message_time == times.message_time + 0.5
+    assert response.values['search_time'] == f'{times.search_time:.6f}'
+
+
+def test_time_of_a_request_begins_with_its_arrival() -> None:
+    planned = server(store(rooms()).newest).plan(REQUEST, arrived=time.monotonic() - 5.0)
+    assert planned.elapsed >= 5.0
 
 
 def test_refusals_are_counted_and_leave_the_times_alone() -> None:

@@ -9,7 +9,7 @@ from hnr_planner.ros.interfaces.request_server import RequestServer
 from hnr_planner.ros.interfaces.rviz_tools import RvizTools
 from hnr_planner.ros.map.map_input import MapInput
 from hnr_planner.ros.messages.paths import request_from_message
-from hnr_planner.ros.messages.serialised_response import PlanResponses
+from hnr_planner.ros.messages.plan_responses import PlanResponses
 from hnr_planner.ros.node.bond import NodeBond
 from hnr_planner.ros.node.callback_group import BoundedCallbackGroup
 from hnr_planner.ros.node.managed_node import ManagedNode
@@ -173,8 +173,9 @@ class PlannerNode(ManagedNode):
     ) -> GetPlan.Response:
         """Return the response to a request for a path; ``algorithm`` None is the parameter's."""
         request = request_from_message(message, algorithm or self.settings.algorithm)
-        planned = self._server.plan(service, request)
-        return self._responses.make(planned.response.poses, planned.header)
+        publication = self._server.plan(service, request)
+        poses, header = publication.response.poses, publication.header
+        return self._responses.make(poses, header, publication.path)
 
     def _sample(self, _request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
         """Draw points of the free space; return the outcome, and the stamp of their message."""
