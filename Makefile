@@ -30,9 +30,10 @@ help:
 	@echo 'make test                  run the tests (ARGS="-k name -x" goes to pytest)'
 	@echo 'make compiled              those tests as machine code that else run interpreted'
 	@echo 'make soak                  the nodes under load and faults, for a quarter of an hour'
-	@echo 'make check                 format, lint, types, spelling, then the tests'
+	@echo 'make check                 format, lint, types, spelling, the site, then the tests'
 	@echo 'make bench                 side by side with OMPL, grid search and hopsy, half an hour'
 	@echo 'make bench QUICK=1         the same in some minutes, for a look'
+	@echo 'make docs                  the site, in docs/_build/html'
 	@echo 'make figures               the experiments of docs/ again, half an hour'
 	@echo 'make figures RUNS=2        a look at them, in experiments/'
 	@echo 'make format                format the sources'
@@ -48,7 +49,7 @@ $(DEMO): EXTRAS := ros,plot
 $(DEMO): STAMPS := $(DEMO)
 $(TEST): EXTRAS := ros,plot,experiments,test
 $(TEST): STAMPS := $(DEMO) $(TEST)
-$(ALL): EXTRAS := ros,plot,experiments,test,check
+$(ALL): EXTRAS := ros,plot,experiments,test,check,docs
 $(ALL): STAMPS := $(DEMO) $(TEST) $(ALL)
 
 SUITABLE := import ensurepip, sys, venv; sys.exit(not (3, 11) <= sys.version_info[:2] <= (3, 13))
@@ -102,7 +103,18 @@ soak: $(TEST)
 
 .PHONY: check
 check: lint
+	@$(MAKE) --no-print-directory docs
 	@$(MAKE) --no-print-directory test
+
+# From a copy in which the links to folders beside docs/ are files: Sphinx follows links to their
+# targets, and links between the pages would break.
+.PHONY: docs
+docs: $(ALL)
+	rm -rf docs/_build/source
+	mkdir -p docs/_build/source
+	tar -C docs --exclude=./_build --dereference -c . | tar -C docs/_build/source -x
+	$(VENV) -m sphinx -q -W --keep-going docs/_build/source docs/_build/html
+	@echo 'The site begins at docs/_build/html/index.html.'
 
 .PHONY: lint
 lint: $(ALL)

@@ -1,6 +1,7 @@
 """Build hnr_planner: for ``colcon build`` (ament_python) and for ``pip install`` alike."""
 
 from glob import glob
+from pathlib import Path
 
 from setuptools import find_packages, setup
 
@@ -8,10 +9,27 @@ package_name = 'hnr_planner'
 
 setup(
     name=package_name,
-    version='0.1.0',
+    version='0.2.0',
     description='A ROS 2 planning node and library: Hit-and-Run and RRT on occupancy maps.',
-    long_description='See README.md.',
+    # `colcon build --symlink-install` runs it through a link in a folder of its own.
+    long_description=Path(__file__).resolve().with_name('README.md').read_text(encoding='utf-8'),
+    long_description_content_type='text/markdown',
     license='Apache-2.0',
+    keywords='hit-and-run, motion planning, occupancy grid, random walk, ROS 2, RRT, sampling',
+    classifiers=[
+        'Development Status :: 4 - Beta',
+        'Intended Audience :: Developers',
+        'Intended Audience :: Science/Research',
+        'Operating System :: POSIX :: Linux',
+        'Programming Language :: Python :: 3',
+        'Programming Language :: Python :: 3.11',
+        'Programming Language :: Python :: 3.12',
+        'Programming Language :: Python :: 3.13',
+        'Topic :: Scientific/Engineering :: Mathematics',
+        'Topic :: Scientific/Engineering',
+        'Typing :: Typed',
+    ],
+    project_urls={'Paper': 'https://arxiv.org/abs/1610.08865'},
     maintainer='The hnr_planner developers',
     maintainer_email='maintainers@hnr-planner.example',
     packages=find_packages(include=[package_name, f'{package_name}.*']),
@@ -58,6 +76,14 @@ setup(
             'pytest-xdist>=3.4',
             'selenium>=4.18',
             'setuptools>=64,<80',  # later ones lack what `colcon build --symlink-install` calls
+        ],
+        # The site. Held to one series each, as the tools below.
+        'docs': [
+            'furo==2025.12.*',
+            'matplotlib>=3.6',
+            'myst-parser==5.*',
+            'sphinx==9.0.*',
+            'sphinx-gallery==0.22.*',
         ],
         # Held to one series each, so that a new rule of a tool never fails an old commit.
         'check': [

@@ -9,7 +9,7 @@ from typing import Any
 
 from hnr_planner import core
 
-__version__ = '0.1.0'
+__version__ = '0.2.0'
 __all__ = core.__all__
 
 

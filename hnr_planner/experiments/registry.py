@@ -37,7 +37,7 @@ class ExperimentEntry(NamedTuple):
 
 _PACKAGE = 'hnr_planner.experiments'
 
-#: Every experiment by its name, in the order of ``docs/README.md``.
+#: Every experiment by its name, in the order of ``docs/measured.md``.
 EXPERIMENTS = {
     name: ExperimentEntry(name, f'{_PACKAGE}.{name}', summary)
     for name, summary in (

@@ -42,7 +42,7 @@ def test_every_experiment_has_its_page_and_figure(name: str) -> None:
     page = (ROOT / 'docs' / f'{name}.md').read_text()
     assert f'figures/{name}.svg' in page
     assert f'python -m hnr_planner experiment {name}' in page
-    assert f'({name}.md)' in (ROOT / 'docs' / 'README.md').read_text()
+    assert f'({name}.md)' in (ROOT / 'docs' / 'measured.md').read_text()
     assert (ROOT / 'docs' / 'figures' / f'{name}.svg').stat().st_size < 150_000
 
 

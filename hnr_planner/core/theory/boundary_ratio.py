@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike
 
 def boundary_ratio(space: Space, x: ArrayLike, n_directions: int = 4096) -> float:
     """
-    Return the largest |x - b| / |x - c| at one point of a convex set in 2 or 3 dimensions.
+    Return the largest ``|x - b| / |x - c|`` at one point of a convex set in 2 or 3 dimensions.
 
     b is the nearer end of a chord through ``x`` (dim,), c any boundary point. The ratio is at
     least 1, since c = b is allowed. The paper's R_epsilon is its supremum over points x.

@@ -85,8 +85,8 @@ def view_bound(kappa: float, distance: float, epsilon: float) -> float:
     """
     Return the bound of Lemma 11 on the probability that a step from u is not visible from v.
 
-    It is max(4/pi, kappa / sin(pi/8)) |u - v| / epsilon, for u and v at least ``epsilon`` from the
-    boundary and ``distance`` from each other [m].
+    It is ``max(4/pi, kappa / sin(pi/8)) |u - v| / epsilon``, for u and v at least ``epsilon``
+    from the boundary and ``distance`` from each other [m].
     """
     return max(4.0 / math.pi, kappa / SIN_8) * distance / epsilon
 
@@ -149,7 +149,7 @@ def mended_conductance(image: BallImage) -> float:
     Besides the corrections of ``corrected_conductance``: e^6 replaces e^4, since the cap of
     Lemma 12 has to be cut at 2/sqrt n; Lemma 11 is that of ``mended_view_bound``; and, since
     d-tilde <= d_Sigma, the second branch uses the distance: d_Sigma >= e/(24 D) at depth e makes
-    |u - v| >= e^2/(72 D), and so d-tilde >= e^2/(18 D^2).
+    ``|u - v| >= e^2/(72 D)``, and so d-tilde >= e^2/(18 D^2).
     """
     n = image.dim
     closeness = 1.0 / (6.0 * mended_view_bound(n, image.kappa, 1.0, 1.0))

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 
 def cross_ratio_distance(space: Space, u: ArrayLike, v: ArrayLike) -> Floats:
     """
-    Return the cross-ratio distances |a - b| |u - v| / (|a - u| |v - b|) of pairs of points.
+    Return the cross-ratio distances ``|a - b| |u - v| / (|a - u| |v - b|)`` of pairs of points.
 
     The distance has no unit and is invariant under affine maps. It is not a metric: on a chord,
     the distances of subsegments sum to less than that of the ends (Lemma 9).

@@ -23,9 +23,9 @@ def transition_density(space: Space, u: ArrayLike, points: ArrayLike) -> Floats:
     """
     Return the density at ``points`` of one step of Hit-and-Run from ``u``.
 
-    The line through v is hit with density 1 / (n pi_n |u - v|^(n-1)) by each of its two
-    directions; then the position on the chord has density 1 / |chord|. The density is 0 at points
-    not visible from ``u``.
+    The line through v is hit with density ``1 / (n pi_n |u - v|^(n-1))`` by each of its two
+    directions; then the position on the chord has density ``1 / |chord|``. The density is 0 at
+    points not visible from ``u``.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""The README: its commands run, its Python runs, its links lead somewhere."""
+"""The README and the pages of docs/: commands run, Python runs, links lead somewhere."""
 
 from collections.abc import Iterator
 from pathlib import Path
@@ -17,11 +17,13 @@ import pytest
 pytestmark = pytest.mark.usefixtures('compiled')
 
 README = (ROOT / 'README.md').read_text()
+DOCS = ROOT / 'docs'
 
 
-def blocks(language: str) -> list[str]:
-    """Return the fenced blocks in a language."""
-    return re.findall(rf'^```{language}\n(.*?)^```', README, re.MULTILINE | re.DOTALL)
+def blocks(language: str, page: str) -> list[str]:
+    """Return the fenced blocks in a language on a page of docs/."""
+    text = (DOCS / f'{page}.md').read_text()
+    return re.findall(rf'^```{language}\n(.*?)^```', text, re.MULTILINE | re.DOTALL)
 
 
 @pytest.fixture
@@ -31,7 +33,7 @@ def clone(tmp_path: Path) -> Iterator[Path]:
     yield tmp_path
 
 
-def run(command: list[str], folder: Path) -> str:
+def run(command: list[str], folder: Path, mode: modes.Mode = modes.Mode.COMPILED) -> str:
     """Run a command in a folder and return what it printed."""
     done = subprocess.run(
         command,
@@ -40,7 +42,7 @@ def run(command: list[str], folder: Path) -> str:
             'PYTHONPATH': str(ROOT),
             'NUMBA_CACHE_DIR': str(cache_home(cache_folder())),
             'PATH': f'{Path(sys.executable).parent}:/usr/bin:/bin',
-            modes.VARIABLE: modes.Mode.COMPILED.value,
+            modes.VARIABLE: mode.value,
         },
         capture_output=True,
         text=True,
@@ -50,8 +52,9 @@ def run(command: list[str], folder: Path) -> str:
     return done.stdout
 
 
-@pytest.mark.parametrize('block', blocks('bash'), ids=['plan', 'sample', 'experiment'])
-def test_commands_run_and_write_their_files(block: str, clone: Path) -> None:
+@pytest.mark.parametrize('page', ['map_files', 'sampling', 'measured'])
+def test_commands_run_and_write_their_files(page: str, clone: Path) -> None:
+    (block,) = blocks('bash', page)
     out = run(['bash', '-ec', block], clone)
     assert 'SOLVED' in out or 'points' in out or 'figure ' in out
     for name in re.findall(r'--plot (\S+)', block):
@@ -64,11 +67,33 @@ def test_commands_run_and_write_their_files(block: str, clone: Path) -> None:
         assert len((clone / name).read_text().splitlines()) == 5001
 
 
-@pytest.mark.parametrize('block', blocks('python'), ids=['plan', 'drive', 'sample'])
-def test_python_runs(block: str, clone: Path) -> None:
-    out = run([sys.executable, '-c', block], clone)
-    begins = 'SOLVED path of', 'SOLVED trajectory of', '(4, 1000, 6)\nconverged: R-hat at most 1.0'
-    assert out.startswith(begins)
+@pytest.mark.parametrize(
+    ('page', 'begins'),
+    [
+        ('map_files', 'SOLVED path of'),
+        ('trajectories', 'SOLVED trajectory of'),
+        ('sampling', '(4, 1000, 6)\nconverged: R-hat at most 1.0'),
+    ],
+)
+def test_first_python_of_a_page_runs(page: str, begins: str, clone: Path) -> None:
+    assert run([sys.executable, '-c', blocks('python', page)[0]], clone).startswith(begins)
+
+
+def test_other_python_runs_and_prints_what_the_pages_say(clone: Path) -> None:
+    """Interpreted: each is of another kind of space, and takes a second at most."""
+    in_threads, on_a_cluster = blocks('python', 'parallel')
+    (wall,) = blocks('python', 'failures')
+    program = '\n'.join([in_threads, on_a_cluster, wall, blocks('python', 'sampling')[1]])
+    out = run([sys.executable, '-c', program], clone, modes.Mode.INTERPRETED)
+    threads, cluster, failure, moves = out.splitlines()
+    assert threads == "['SOLVED', 'SOLVED', 'SOLVED']"
+    assert cluster.startswith('(6, 500, 4) converged')
+    assert failure.startswith('UNREACHABLE ')
+    assert moves.startswith('[')
+
+
+#: Pages of the site that are made when it is built.
+BUILT = {'gallery/index', 'reference/index'}
 
 
 def leads_somewhere(page: Path, link: str) -> bool:
@@ -85,17 +110,19 @@ def headings(page: str) -> set[str]:
 
 
 @pytest.mark.parametrize(
-    'page', [ROOT / 'README.md', *sorted((ROOT / 'docs').glob('*.md'))], ids=lambda page: page.stem
+    'page', [ROOT / 'README.md', *sorted(DOCS.glob('*.md'))], ids=lambda page: page.stem
 )
 def test_links_lead_somewhere(page: Path) -> None:
+    page = page.resolve()  # some belong to another folder
     links = re.findall(r'\]\(([^)]+)\)', page.read_text())
-    assert links
+    links = [link for link in links if link not in BUILT]
     here = [link for link in links if not link.startswith('https://')]
     assert [link for link in here if not leads_somewhere(page, link)] == []
 
 
 def test_the_table_of_algorithms_is_the_registry() -> None:
-    table = README.partition('| `algorithm` | how it searches |')[2].partition('\n\n')[0]
+    page = (DOCS / 'algorithms.md').read_text()
+    table = page.partition('| `algorithm` | how it searches |')[2].partition('\n\n')[0]
     rows = [line for line in table.splitlines() if line.startswith('| `')]
     assert rows == [f'| `{entry.name}` | {entry.summary} |' for entry in PLANNERS]
 
@@ -112,8 +139,12 @@ def test_names_of_ros_are_those_of_the_node() -> None:
     node = pytest.importorskip(
         'hnr_planner.ros.node.planner', reason='needs ROS 2', exc_type=ImportError
     )
-    services = set(re.findall(r'`~/(plan\w*)`', README))
+    services = set(re.findall(r'`~/(plan\w*)`', (DOCS / 'robot.md').read_text()))
     assert services == set(node.SERVICES)
+
+
+def test_the_readme_is_one_screen() -> None:
+    assert len(README.splitlines()) <= 60
 
 
 def test_picture_is_small_enough_to_load_at_once() -> None:
