@@ -158,6 +158,12 @@ class Request:
     seed: int
     problem: Problem
 
+    @property
+    def straight_length(self) -> float:
+        """Straight distance [m] from the start to the goal region: no path is shorter."""
+        distance = math.dist(self.start.tolist(), self.goal.tolist())
+        return max(distance - self.goal_radius, 0.0)
+
     def stream(self, *purpose: int) -> Stream:
         """Return the random stream that follows from the seed and the numbers of a purpose."""
         return stream(self.seed, *purpose)

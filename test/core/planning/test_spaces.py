@@ -29,7 +29,8 @@ from numpy.typing import NDArray
 import pytest
 import shapely
 
-NAMES = [name for name in ALGORITHMS if name != 'auto']
+#: Planners of every space; ``polyanya`` plans on grids.
+NAMES = [name for name in ALGORITHMS if name not in ('auto', 'polyanya')]
 #: Between two points of a path that are looked at, in parts of the space's diagonal.
 STEP = 1e-4
 
