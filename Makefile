@@ -86,7 +86,7 @@ demo: $(DEMO)
 	$(VENV) -m hnr_planner demo $(if $(MAP),--map '$(MAP)') $(if $(KEEP),--keep)
 
 # A worker for each core, which takes whole files: the tests of a file share a node, in their order.
-PARALLEL := --numprocesses logical --maxprocesses 4 --dist loadfile
+PARALLEL := --numprocesses logical --maxprocesses 4 --dist loadfile --no-loadscope-reorder
 
 .PHONY: test
 test: $(TEST)

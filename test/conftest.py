@@ -11,6 +11,7 @@ import fcntl
 import os
 import subprocess
 import sys
+from typing import Any
 
 from hnr_planner.core import warm_up
 from hnr_planner.core.kernels import modes
@@ -25,19 +26,66 @@ modes.set_mode('interpreted')
 # Set before the first message class is imported.
 # Without these checks a field of the wrong type goes out as garbage, silently.
 os.environ['ROS_PYTHON_CHECK_FIELDS'] = '1'
+# Of several workers each has one core: threads that wait for a busy one burn what they wait for.
+os.environ.setdefault('OPENBLAS_NUM_THREADS', '1')
 # No test talks to another machine.
 os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'LOCALHOST'
 
+#: Folders and files that take longest, so that no worker has one of them left at the end.
+FIRST = (
+    'test/laws/',
+    'test/experiments/test_experiments.py',
+    'test/core/sampling/test_walk_laws.py',
+    'test/core/planning/test_spaces.py',
+    'test/core/kernels/test_tiers.py',
+    'test/cli/test_readme.py',
+    'test/cli/test_demo.py',
+    'test/core/planning/',
+    'test/core/kernels/',
+    'test/core/sampling/',
+    'test/core/trajectories/',
+    'test/test_package.py',
+    'test/ros/',
+)
+#: Folders whose tests all run in one worker, since they share kernels that nobody else needs.
+TOGETHER = ('test/laws/',)
 WARM_UP = 'from hnr_planner.core import warm_up; warm_up()'
 
 
 def pytest_sessionstart(session: pytest.Session) -> None:
     """Start to compile before the workers do: each would do it by itself, and nodes be late."""
-    if session.config.pluginmanager.hasplugin('dsession'):
+    config = session.config
+    if config.pluginmanager.hasplugin('dsession') and not config.option.collectonly:
         # The process holds the lock until it ends, however that happens.
         lock = _lock(fcntl.LOCK_EX)
-        subprocess.Popen([sys.executable, '-c', WARM_UP], pass_fds=[lock])
+        warming = subprocess.Popen([sys.executable, '-c', WARM_UP], pass_fds=[lock])
         os.close(lock)
+        config.add_cleanup(warming.wait)
+        config.add_cleanup(warming.kill)  # cleanups run in the reverse order
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Put first what takes longest; else the order stays."""
+
+    def turn(item: pytest.Item) -> int:
+        return next(
+            (k for k, path in enumerate(FIRST) if item.nodeid.startswith(path)), len(FIRST)
+        )
+
+    items.sort(key=turn)
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
+    """Return the scheduler that gives whole files to workers, and whole folders in TOGETHER."""
+    from xdist.scheduler import LoadFileScheduling
+
+    class Scheduler(LoadFileScheduling):
+        def _split_scope(self, nodeid: str) -> str:
+            folder = next((path for path in TOGETHER if nodeid.startswith(path)), None)
+            return folder or super()._split_scope(nodeid)
+
+    return Scheduler(config, log) if config.option.dist == 'loadfile' else None
 
 
 def pytest_collection_finish(session: pytest.Session) -> None:
