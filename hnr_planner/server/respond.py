@@ -22,6 +22,7 @@ from hnr_planner.core import (
 )
 from hnr_planner.core.kernels.kernel import interpreted_calls
 from hnr_planner.core.planning.escape import escape_point
+from hnr_planner.core.planning.planner import Planner
 from hnr_planner.core.planning.tiers import remark_since, tier_since
 from hnr_planner.server.limits import RequestLimits
 from hnr_planner.server.map_store import MapSnapshot
@@ -39,6 +40,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 ToFrame = Callable[[Pose, str], Pose]
+PlannerFor = Callable[[str, MapSnapshot], str | Planner]
 
 #: Time [s] that measuring the clearance of a path gets even when the time limit has passed.
 MEASURING_TIME = 0.02
@@ -55,6 +57,11 @@ def only_same_frame(pose: Pose, frame: str) -> Pose:
     return replace(pose, frame=frame)
 
 
+def planner_by_name(algorithm: str, _snapshot: MapSnapshot) -> str:
+    """Return the name of the planner for an algorithm, which is the algorithm's own."""
+    return algorithm
+
+
 def respond(
     request: PlanRequest,
     settings: Settings,
@@ -62,6 +69,7 @@ def respond(
     cancel: threading.Event,
     to_frame: ToFrame = only_same_frame,
     arrived: float | None = None,
+    planner_for: PlannerFor = planner_by_name,
 ) -> PlanResponse:
     """
     Plan for ``request`` and return a response that says how planning ended.
@@ -83,6 +91,8 @@ def respond(
         the name of the pose is put before the words of the refusal.
     arrived : float, optional
         When the request arrived, by ``time.monotonic`` [s]; now when left out.
+    planner_for : callable
+        Returns the planner for the name of an algorithm and a map.
 
     """
     arrived = time.monotonic() if arrived is None else arrived
@@ -93,7 +103,7 @@ def respond(
         check_request(request)
         with times.phase('map'):
             snapshot = wait_for_map(newest_map, settings.patience, cancel)
-        job = _Job(settings, newest_map, to_frame, limits, times)
+        job = _Job(settings, newest_map, to_frame, limits, times, planner_for)
         response = job.plan_for_newest_map(request, snapshot)
     except Refusal as refusal:
         why = refusal.why + (remark_since(before) if limits.hold() else '')
@@ -115,6 +125,7 @@ class _Job:
     to_frame: ToFrame
     limits: RequestLimits
     times: Times
+    planner_for: PlannerFor
 
     def plan_for_newest_map(self, request: PlanRequest, snapshot: MapSnapshot) -> PlanResponse:
         """
@@ -155,10 +166,16 @@ class _Job:
             )
         if spacing < 0.0:
             spacing = snapshot.occupancy.resolution
+        orientation = response.goal_orientation
         return replace(
             response,
             clearance=self._clearance(path, snapshot),
-            poses=pose_rows(path, spacing, response.goal_orientation),
+            poses=pose_rows(path, spacing, orientation),
+            other_poses=tuple(
+                pose_rows(other, spacing, orientation)
+                for other in response.others
+                if self._is_free(other, response.escape, snapshot)
+            ),
         )
 
     def _clearance(self, path: NDArray[np.float64], snapshot: MapSnapshot) -> float:
@@ -171,6 +188,13 @@ class _Job:
     def _is_still_free(self, response: PlanResponse, newer: MapSnapshot) -> bool:
         """Return whether a newer map leaves a path free; False when the limits cut the check."""
         return self.limits.within(lambda: _is_still_free(response, newer), False)
+
+    def _is_free(self, path: NDArray[np.float64], escape: float, snapshot: MapSnapshot) -> bool:
+        """Return whether a path (m, 2) [m] is free from its escape on; False at a limit."""
+        free = path[1:] if escape > 0.0 else path
+        return self.limits.within(
+            lambda: snapshot.space.first_blocked_segment(free) is None, False, MEASURING_TIME
+        )
 
     def _map_changed(self) -> Refusal:
         """Return the refusal (MAP_CHANGED) for a blocked path and no time left to find another."""
@@ -209,7 +233,7 @@ class _Job:
         legs: list[PlanResponse] = []
         start, ends = request.start, (*request.via, request.goal)
         for number, end in enumerate(ends, 1):
-            leg = self._plan(replace(request, start=start, via=(), goal=end), snapshot)
+            leg = self._plan(replace(request, start=start, via=(), goal=end), snapshot, n_paths=1)
             if not leg.solved:
                 return replace(leg, why=f'leg {number} of {len(ends)}: {leg.why}')
             legs.append(leg)
@@ -219,8 +243,17 @@ class _Job:
         why = '; '.join(f'leg {number}: {leg.why}' for number, leg in enumerate(legs, 1))
         return replace(legs[0], why=why, request=request, result=result)
 
-    def _plan(self, request: PlanRequest, snapshot: MapSnapshot) -> PlanResponse:
-        """Plan from the start to the goal on one map; the poses of ``via`` are not looked at."""
+    def _plan(
+        self, request: PlanRequest, snapshot: MapSnapshot, n_paths: int | None = None
+    ) -> PlanResponse:
+        """
+        Plan from the start to the goal on one map; the poses of ``via`` are not looked at.
+
+        ``n_paths`` is the number of alternatives, by default that of the parameters.
+        """
+        arguments = self.settings.plan_arguments
+        if n_paths is not None:
+            arguments['alternatives'] = n_paths
         try:
             if request.has_inertia:
                 return self._plan_trajectory(request, snapshot)
@@ -228,11 +261,11 @@ class _Job:
                 snapshot.space,
                 request.start.point,
                 request.goal.point,
-                algorithm=request.algorithm,
+                algorithm=self.planner_for(request.algorithm, snapshot),
                 goal_tolerance=request.tolerance,
                 time_limit=self.limits.time_left,
                 cancel=self.limits.cancel,
-                **self.settings.plan_arguments,
+                **arguments,
             )
         except RequestError as error:
             raise Refusal(Outcome.BAD_REQUEST, str(error)) from error

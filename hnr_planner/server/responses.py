@@ -5,7 +5,8 @@ from dataclasses import asdict, dataclass, field, replace
 import math
 from typing import Self
 
-from hnr_planner.core import FreeSpaceDraws
+from hnr_planner.core import FreeSpaceDraws, PlanResult
+from hnr_planner.core.lengths import path_length
 from hnr_planner.core.planning.result import SearchResult
 from hnr_planner.core.systems import Trajectory
 from hnr_planner.server.map_store import MapSnapshot
@@ -94,6 +95,8 @@ class PlanResponse(Response):
         What the planner returned; None when nothing was planned.
     poses : (n, 7)
         Poses along the path: x, y, z [m] and the quaternion x, y, z, w; none unless solved.
+    other_poses : tuple of (n, 7)
+        Poses along each alternative, in the order of their lengths.
     trajectory : Trajectory, optional
         States over time of a robot with inertia; None for other robots, or when none was found.
     clearance : float
@@ -111,6 +114,7 @@ class PlanResponse(Response):
     request: PlanRequest
     result: SearchResult | None = None
     poses: NDArray[np.float64] = field(default_factory=lambda: np.empty((0, 7)))
+    other_poses: tuple[NDArray[np.float64], ...] = ()
     trajectory: Trajectory | None = None
     clearance: float = math.nan
     escape: float = 0.0
@@ -132,6 +136,16 @@ class PlanResponse(Response):
         if self.solved and self.result is not None:
             return self.result.path
         return np.empty((0, 2))
+
+    @property
+    def poses_of_all(self) -> tuple[NDArray[np.float64], ...]:
+        """Poses (n, 7) along the path and along each alternative; none unless solved."""
+        return (self.poses, *self.other_poses) if len(self.poses) else ()
+
+    @property
+    def others(self) -> tuple[NDArray[np.float64], ...]:
+        """Alternatives (m, 2) to the path [m], in the order of their lengths."""
+        return self.result.others if self.solved and isinstance(self.result, PlanResult) else ()
 
     @property
     def free_path(self) -> NDArray[np.float64]:
@@ -180,8 +194,15 @@ class PlanResponse(Response):
             'first_solution_time': f'{first.elapsed if first else math.nan:.6f}',
             'first_solution_length': f'{first.length if first else math.nan:.6g}',
             'length': f'{result.length if self.solved else math.nan:.6g}',
+            'alternatives': str(len(self.poses_of_all)),
+            'alternative_lengths': ' '.join(f'{_length(rows):.6g}' for rows in self.poses_of_all),
             'cut_by_time': str(bool(result.cut_by_time)).lower(),
         }
+
+
+def _length(rows: NDArray[np.float64]) -> float:
+    """Return the length [m] of a path through poses (n, 7)."""
+    return path_length(rows[:, :2])
 
 
 @dataclass(frozen=True)

@@ -101,7 +101,9 @@ def test_path_to_a_pose(
     assert path_collisions(points, ROOMS >= 65, 0.05) == []
     assert points[0].tolist() == list(START) and points[-1].tolist() == list(GOAL)
     assert result.planning_time.nanosec > 0
-    assert client.outcome_of(result.path)[1]['algorithm'] == 'hit_and_run_connect'
+    # Which of the two made the path of auto depends on the clock.
+    made_by = client.outcome_of(result.path)[1]['algorithm']
+    assert made_by in ('hit_and_run_connect', 'polyanya')
 
 
 @pytest.mark.parametrize('name', ACTIONS)

@@ -9,6 +9,7 @@ from test.ros.harness import (
     points_in,
     points_of,
     pose,
+    stamp_of,
     until,
     yaws_of,
 )
@@ -17,6 +18,7 @@ import time
 
 from diagnostic_msgs.msg import DiagnosticArray
 from hnr_planner.server.outcomes import Outcome
+from nav_msgs.msg import Path
 import numpy as np
 import pytest
 from rclpy.qos import QoSProfile
@@ -97,6 +99,24 @@ def test_samples_markers_path_and_outcome_bear_the_stamp_of_the_answer(client: C
         'start',
         'goal',
     ]
+
+
+def test_alternatives_have_a_message_each_with_one_stamp(client: Client) -> None:
+    paths = client.listen(Path, '/hnr_planner/paths')
+    client.set_parameters(alternatives=2)
+    path = client.plan(pose(*START), pose(*GOAL))
+    client.set_parameters(alternatives=1)
+    _, values = client.outcome_of(path)
+    count = int(values['alternatives'])
+
+    def alternatives() -> list[Path]:
+        return [one for one in list(paths) if stamp_of(one) == stamp_of(path)]
+
+    until(lambda: len(alternatives()) >= count, 'all alternatives')
+    first, *others = (points_of(one) for one in alternatives())
+    assert np.array_equal(first, points_of(path)) and len(others) == count - 1
+    for points in others:
+        assert points[[0, -1]].tolist() == first[[0, -1]].tolist()
 
 
 def test_outcome_says_where_the_time_went(client: Client) -> None:

@@ -21,6 +21,7 @@ from visualization_msgs.msg import MarkerArray
 #: Names below the node's of the topics of publications, besides the outcome, and their types.
 TOPICS = {
     'path': Path,
+    'paths': Path,
     'trajectory': MultiDOFJointTrajectory,
     'samples': PointCloud2,
     'markers': MarkerArray,
@@ -86,8 +87,12 @@ class PlanPublication(Publication):
         return serialised_path(self.response.poses, self.header)
 
     def messages(self) -> Messages:
-        """Yield path and trajectory; each is empty where there is none."""
+        """Yield path, alternatives and trajectory; each is empty where there is none."""
         yield 'path', self.path
+        for poses in self.response.poses_of_all:
+            yield 'paths', serialised_path(poses, self.header)
+        if not self.response.solved:
+            yield 'paths', self.path
         yield 'trajectory', serialised_trajectory(self.response.trajectory, self.header)
 
     def pictures(self) -> Pictures:

@@ -15,6 +15,7 @@ from hnr_planner.ros.interfaces.publications import Publication, TOPICS
 from hnr_planner.ros.messages.outcomes import outcome_message
 from hnr_planner.server.request_log import LogEntry
 from hnr_planner.server.responses import PlanResponse, Response
+from hnr_planner.server.settings import MOST_ALTERNATIVES
 from rclpy.clock import Clock
 from rclpy.duration import Duration
 from rclpy.event_handler import PublisherEventCallbacks
@@ -22,8 +23,8 @@ from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.time import Time
 
-#: Number of the latest outcomes that late subscribers get.
-OUTCOMES_KEPT = 100
+#: Number of the latest outcomes, and of paths of the latest request, that late subscribers get.
+OUTCOMES_KEPT, PATHS_KEPT = 100, MOST_ALTERNATIVES
 
 #: Longest wait, for each topic, until subscribers have its last message when the node ends.
 LONGEST_DELIVERY = Duration(seconds=0.2)
@@ -65,7 +66,10 @@ class Publisher:
         self._outcome = node.create_publisher(DiagnosticArray, '~/outcome', latched(OUTCOMES_KEPT))
         self._publishers = {
             topic: node.create_publisher(
-                kind, f'~/{topic}', latched(1), event_callbacks=self._on_match(topic)
+                kind,
+                f'~/{topic}',
+                latched(PATHS_KEPT if topic == 'paths' else 1),
+                event_callbacks=self._on_match(topic),
             )
             for topic, kind in TOPICS.items()
         }

@@ -63,6 +63,7 @@ class RequestServer:
         self.path_monitor = PathMonitor(newest_map, self._report_path)
         self.searches = self._server.searches
         self.statistics = self._server.statistics
+        self.roadmaps = self._server.roadmaps
 
     def plan(
         self,
@@ -118,6 +119,16 @@ class RequestServer:
         log = self._log.entry(caller, response, self._settings().time_limit)
         self._publisher.hand_over(SamplePublication(caller, response, header, log))
         return Sampled(response, header.stamp)
+
+    def follow_map(self) -> None:
+        """Check the last path on the newest map, and keep its roadmap, where one is wanted."""
+        self.path_monitor.check()
+        self._server.follow_map()
+
+    def forget_map(self) -> None:
+        """Forget the last path and the roadmap."""
+        self.path_monitor.forget()
+        self.roadmaps.forget()
 
     def response_sent(self) -> None:
         """Release the messages about the response that this thread got last from this server."""
