@@ -28,6 +28,7 @@ help:
 	@echo 'make demo MAP=FILE.yaml    the same on a map of your own'
 	@echo 'make demo KEEP=1           leave the nodes running, to try calls by hand'
 	@echo 'make test                  run the tests (ARGS="-k name -x" goes to pytest)'
+	@echo 'make compiled              those tests as machine code that else run interpreted'
 	@echo 'make soak                  the nodes under load and faults, for a quarter of an hour'
 	@echo 'make check                 format, lint, types, spelling, the site, then the tests'
 	@echo 'make bench                 side by side with OMPL, grid search and hopsy, half an hour'
@@ -85,9 +86,16 @@ demo: $(DEMO)
 	$(VENV) -m hnr_planner demo $(if $(MAP),--map '$(MAP)') $(if $(KEEP),--keep)
 
 # A worker for each core, which takes whole files: the tests of a file share a node, in their order.
+PARALLEL := --numprocesses logical --maxprocesses 4 --dist loadfile --no-loadscope-reorder
+
 .PHONY: test
 test: $(TEST)
-	$(VENV) -m pytest --numprocesses logical --maxprocesses 4 --dist loadfile $(ARGS)
+	$(VENV) -m pytest $(PARALLEL) $(ARGS)
+
+# What makes tests quick, running the kernels of a few calls interpreted, is left out here.
+.PHONY: compiled
+compiled: $(TEST)
+	HNR_COMPILE_ALL=1 $(VENV) -m pytest -m interpreted $(PARALLEL) $(ARGS)
 
 .PHONY: soak
 soak: $(TEST)

@@ -11,7 +11,8 @@ setup(
     name=package_name,
     version='0.2.0',
     description='A ROS 2 planning node and library: Hit-and-Run and RRT on occupancy maps.',
-    long_description=Path(__file__).with_name('README.md').read_text(encoding='utf-8'),
+    # `colcon build --symlink-install` runs it through a link in a folder of its own.
+    long_description=Path(__file__).resolve().with_name('README.md').read_text(encoding='utf-8'),
     long_description_content_type='text/markdown',
     license='Apache-2.0',
     keywords='hit-and-run, motion planning, occupancy grid, random walk, ROS 2, RRT, sampling',

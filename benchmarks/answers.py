@@ -3,13 +3,15 @@ Measure what an answer costs besides its search, and what rclpy alone needs to s
 
 Two processes answer the same service in turns: the planning node, and a node that does nothing
 but send a ready-made path with as many poses. One client times both, from its call to the
-response; the time of the search is in the outcome of the request.
+response; the time of the search is in the outcome of the request. Then, where a start sees its
+goal and nothing is searched, the CPU time of both processes is compared.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
+import math
 import os
 from pathlib import Path
 from statistics import median
@@ -21,6 +23,7 @@ from test.ros.harness import grid_message, LATCHED, node_process, pose, SOON, st
 import time
 from typing import NamedTuple
 
+from benchmarks.answer_cost import cost_of, longest_hold
 from benchmarks.progress import show
 from benchmarks.ready_made import NAME as READY_MADE
 from benchmarks.sections import Bench, Section, Verdict, verdict_table
@@ -56,6 +59,14 @@ PAUSE = 0.02
 MOST = 1.5
 #: Pairs of answers that are timed.
 N_PAIRS, N_PAIRS_QUICK = 200, 20
+#: Targets: CPU time [s] of an answer besides its search, also as a multiple of the ready-made
+#: answer's, and the longest time [s] for which an answer keeps the interpreter to itself.
+MOST_CPU, MOST_CPU_RATIO, MOST_HOLD = 5e-3, 0.2, 2e-3
+#: Ends [m] of the path whose start sees its goal, on an empty map, and its number of poses.
+SEEN_START, SEEN_GOAL, SEEN_POSES = (1.0, 1.0), (19.0, 19.0), 2032
+#: Clients that ask at once as fast as answers come, for so long [s]; and the target: answers a
+#: second, as a multiple of those of a node that builds an object for each pose.
+N_CLIENTS, SECONDS, MORE_ANSWERS = 8, 5.0, 4.0
 
 
 class Pair(NamedTuple):
@@ -88,6 +99,31 @@ def _measure(n_pairs: int) -> Iterator[Verdict]:
             for goal in (pose(*NOWHERE), pose(*GOAL)):
                 yield from _compared(caller, goal, n_pairs)
             caller.close()
+        seen = math.dist(SEEN_START, SEEN_GOAL) / (SEEN_POSES - 1) * (1.0 + 1e-9)
+        with node_process('planner_node', Path(folder) / 'seen', pose_spacing=seen) as planner:
+            caller = _Caller()
+            caller.publish(grid_message(np.zeros_like(data), RESOLUTION))
+            planner.wait_for('map received')
+            yield from _costs(caller, planner.popen.pid, n_pairs)
+            bytes_rate = _answers_per_second()
+        arguments = ('--ros-args', '-p', f'pose_spacing:={seen}')
+        with _process('benchmarks.node_of_objects', *arguments):
+            caller.ask(caller.planner, pose(*SEEN_GOAL), start=SEEN_START)
+            objects_rate = _answers_per_second()
+        caller.close()
+    yield Verdict(
+        f'answers a second of {SEEN_POSES} poses to {N_CLIENTS} clients that make no objects',
+        f'{MORE_ANSWERS:g} x those from objects',
+        f'{bytes_rate:.0f}, from objects {objects_rate:.0f}: {bytes_rate / objects_rate:.1f} x',
+        bytes_rate >= MORE_ANSWERS * objects_rate,
+    )
+    hold = longest_hold(SEEN_POSES)
+    yield Verdict(
+        f'another thread waits for the interpreter during an answer of {SEEN_POSES} poses',
+        f'{1e3 * MOST_HOLD:g} ms',
+        f'{1e3 * hold:.2f} ms at most',
+        hold <= MOST_HOLD,
+    )
 
 
 def _compared(caller: _Caller, goal: PoseStamped, n_pairs: int) -> Iterator[Verdict]:
@@ -102,6 +138,46 @@ def _compared(caller: _Caller, goal: PoseStamped, n_pairs: int) -> Iterator[Verd
             if listener is not None:
                 listener.destroy_node()
             yield _verdict(n_poses, listening, pairs)
+
+
+def _costs(caller: _Caller, pid: int, n_pairs: int) -> Iterator[Verdict]:
+    """Measure the CPU time of the process ``pid`` for an answer that needs no search."""
+    goal = pose(*SEEN_GOAL)
+    n_poses = len(caller.ask(caller.planner, goal, start=SEEN_START)[0].poses)
+    with _process('benchmarks.ready_made', str(n_poses)) as ready_made:
+        caller.meet_ready_made(goal)
+        for listening in (False, True):
+            listener = caller.listener() if listening else None
+            costs = [
+                (
+                    cost_of(lambda: caller.ask(caller.planner, goal, start=SEEN_START), pid),
+                    cost_of(lambda: caller.ask(caller.ready_made, goal), ready_made.pid),
+                )
+                for _ in range(n_pairs)
+            ]
+            if listener is not None:
+                listener.destroy_node()
+            ours, least = (median(times) for times in zip(*costs, strict=True))
+            yield Verdict(
+                f'CPU time of the node for an answer of {n_poses} poses without a search, '
+                f'pictures {"" if listening else "not "}subscribed to',
+                f'{1e3 * MOST_CPU:g} ms, {MOST_CPU_RATIO} x',
+                f'{1e3 * ours:.2f} ms, ready-made {1e3 * least:.2f} ms: {ours / least:.2f} x',
+                ours <= min(MOST_CPU, MOST_CPU_RATIO * least),
+            )
+
+
+def _answers_per_second() -> float:
+    """Return how many answers a second ``N_CLIENTS`` clients get that make no objects."""
+    numbers = (N_CLIENTS, SECONDS, *SEEN_START, *SEEN_GOAL)
+    ran = subprocess.run(
+        [sys.executable, '-m', 'benchmarks.raw_clients', *map(str, numbers)],
+        capture_output=True,
+        text=True,
+        check=True,
+        timeout=300.0,
+    )
+    return float(ran.stdout)
 
 
 def _verdict(n_poses: int, listening: bool, pairs: list[Pair]) -> Verdict:
@@ -138,11 +214,11 @@ def _quiet_domain(folder: str) -> Iterator[None]:
 
 
 @contextmanager
-def _process(*module_and_arguments: str) -> Iterator[None]:
+def _process(*module_and_arguments: str) -> Iterator[subprocess.Popen]:
     """Run a Python module in a process while the block runs."""
     process = subprocess.Popen([sys.executable, '-m', *module_and_arguments])
     try:
-        yield
+        yield process
     finally:
         process.kill()  # rclpy's own executors may miss a gentler signal
         process.wait()
@@ -164,10 +240,12 @@ class _Caller:
             DiagnosticArray, '/hnr_planner/outcome', self._read, LATCHED
         )
         self.planner = self._node.create_client(GetPlan, '/hnr_planner/plan')
-        self._ready_made = self._node.create_client(GetPlan, f'/{READY_MADE}/plan')
+        self.ready_made = self._node.create_client(GetPlan, f'/{READY_MADE}/plan')
 
     def close(self) -> None:
-        """End the client."""
+        """End the client, so that nobody gets its map any more."""
+        for node in (self._node, self._reader):
+            node.destroy_node()
         rclpy.try_shutdown(context=self._context)
 
     def publish(self, message: OccupancyGrid) -> None:
@@ -186,7 +264,7 @@ class _Caller:
         deadline = time.monotonic() + SOON
         while True:
             with suppress(TimeoutError):
-                self.ask(self._ready_made, goal, patience=1.0)
+                self.ask(self.ready_made, goal, patience=1.0)
                 return
             if time.monotonic() > deadline:
                 raise TimeoutError('the ready-made path does not come')
@@ -196,15 +274,19 @@ class _Caller:
         path, answer = self.ask(self.planner, goal)
         search = self._search_time(stamp_of(path))
         time.sleep(PAUSE)
-        _, ready_made = self.ask(self._ready_made, goal)
+        _, ready_made = self.ask(self.ready_made, goal)
         return Pair(answer, search, ready_made)
 
     def ask(
-        self, client: Client, goal: PoseStamped, patience: float = SOON
+        self,
+        client: Client,
+        goal: PoseStamped,
+        patience: float = SOON,
+        start: tuple[float, float] = START,
     ) -> tuple[PathMessage, float]:
         """Request a path; return it and the round-trip time [s]."""
         client.wait_for_service(SOON)
-        request = GetPlan.Request(start=pose(*START), goal=goal)
+        request = GetPlan.Request(start=pose(*start), goal=goal)
         began = time.perf_counter()
         future = client.call_async(request)
         # spin_until_future_complete would keep the tasks of all earlier calls.
@@ -225,7 +307,9 @@ class _Caller:
 
     def _read(self, message: DiagnosticArray) -> None:
         _, values = read_outcome(message)
-        self._search_times[stamp_of(message)] = float(values['planning_time'])
+        self._search_times[stamp_of(message)] = float(values['search_time']) + float(
+            values['shortening_time']
+        )
 
 
 def _executor(node: Node) -> SingleThreadedExecutor:

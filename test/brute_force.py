@@ -6,6 +6,7 @@ comes near; a chord is found in exact fractions, by cutting the line with every 
 """
 
 from fractions import Fraction
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -92,11 +93,12 @@ def path_collisions(
     away = points - (x, y)
     cells = away @ np.array([[cos, -sin], [sin, cos]]) / resolution
 
-    found = []
+    found, obstacles = [], _obstacles(blocked)
     for index in range(max(len(points) - 1, 1)):
         last = min(index + 1, len(points) - 1)
-        where = f'segment {index} from {_words(points[index])} to {_words(points[last])}'
-        found += [f'{where} {what}' for what in _segment(cells[index], cells[last], blocked)]
+        for what in _segment(cells[index], cells[last], obstacles):
+            where = f'segment {index} from {_words(points[index])} to {_words(points[last])}'
+            found.append(f'{where} {what}')
     return found
 
 
@@ -176,33 +178,67 @@ def _cut(
     return (first, last) if first <= last else None
 
 
-def _segment(a: NDArray, b: NDArray, blocked: NDArray[np.bool_]) -> list[str]:
+class _Obstacles(NamedTuple):
+    """What a path may meet; the outside is a ring of blocked cells, so that indices are 1 more."""
+
+    #: Shape of the map, without the ring.
+    shape: tuple[int, int]
+    #: For each size (height, width): whether the rectangle with its lowest cell here is blocked.
+    #: Those larger than a cell close the gaps between shrunk neighbours.
+    rectangles: dict[tuple[int, int], NDArray[np.bool_]]
+    #: For each slope of the bar between them: whether the corner at the upper right of a cell is
+    #: shared by two diagonal obstacles only.
+    corners: dict[float, NDArray[np.bool_]]
+
+
+def _obstacles(blocked: NDArray[np.bool_]) -> _Obstacles:
+    """Return all rectangles of blocked cells, and all corners of diagonal ones."""
+    ringed = np.pad(blocked, 1, constant_values=True)
+    lower_left, lower_right = ringed[:-1, :-1], ringed[:-1, 1:]
+    upper_left, upper_right = ringed[1:, :-1], ringed[1:, 1:]
+    return _Obstacles(
+        blocked.shape,
+        {size: _all_blocked(ringed, *size) for size in ((1, 1), (1, 2), (2, 1), (2, 2))},
+        {
+            1.0: lower_left & upper_right & ~lower_right & ~upper_left,
+            -1.0: lower_right & upper_left & ~lower_left & ~upper_right,
+        },
+    )
+
+
+def _segment(a: NDArray, b: NDArray, obstacles: _Obstacles) -> list[str]:
     """Return what one segment, given in cells, collides with."""
     if not (np.isfinite(a).all() and np.isfinite(b).all()):
         return ['is not finite']
-    rows, cols = blocked.shape
+    rows, cols = obstacles.shape
     lowest, highest = np.minimum(a, b), np.maximum(a, b)
     if (lowest < -TOLERANCE).any() or (highest > np.array([cols, rows]) + TOLERANCE).any():
         return ['leaves the map']
 
-    # The outside is a ring of blocked cells: the cell [row, col] is ringed[row + 1, col + 1].
-    ringed = np.pad(blocked, 1, constant_values=True)
-    first_col, first_row = np.maximum(np.floor(lowest).astype(int) - 2, -1)
-    last_col, last_row = np.minimum(np.floor(highest).astype(int) + 2, (cols, rows))
-    top, right = last_row + 2, last_col + 2
-    bottom, left = first_row + 1, first_col + 1
-    near = ringed[bottom:top, left:right]
-
-    found = []
-    for height, width in ((1, 1), (1, 2), (2, 1), (2, 2)):
-        # Rectangles of blocked cells: the larger ones close the gaps between shrunk neighbours.
-        full = _all_blocked(near, height, width)
-        row, col = np.argwhere(full).T + [[first_row], [first_col]]
-        low = np.stack([col, row], axis=1) + TOLERANCE
-        high = np.stack([col + width, row + height], axis=1) - TOLERANCE
-        for k in np.flatnonzero(_meets_boxes(a, b, low, high)):
-            found.append(_entered(row[k], col[k], height, width))
-    return found + _squeezes(a, b, near, first_row, first_col)
+    # The cells near it, in the ring's indices; nothing beyond them comes near.
+    left, bottom = np.maximum(np.floor(lowest).astype(int) - 1, 0).tolist()
+    right, top = np.minimum(np.floor(highest).astype(int) + 4, (cols + 2, rows + 2)).tolist()
+    lots = []
+    for (height, width), full in obstacles.rectangles.items():
+        last_row, last_col = top - height + 1, right - width + 1
+        row, col = np.nonzero(full[bottom:last_row, left:last_col])
+        lots.append([row, col, np.full(len(row), height), np.full(len(row), width)])
+    row, col, height, width = np.concatenate(lots, axis=1)
+    row, col = row + (bottom - 1), col + (left - 1)
+    low = np.stack([col, row], axis=1) + TOLERANCE
+    high = np.stack([col + width, row + height], axis=1) - TOLERANCE
+    met = np.flatnonzero(_meets_boxes(a, b, low, high))
+    found = [_entered(row[k], col[k], height[k], width[k]) for k in met]
+    last_row, last_col = top - 1, right - 1
+    for slope, corners in obstacles.corners.items():
+        for row_near, col_near in np.argwhere(corners[bottom:last_row, left:last_col]):
+            corner = row_near + bottom, col_near + left
+            if _squeezes(a, b, *corner, slope):
+                found.append(
+                    'squeezes between two diagonal blocked cells '
+                    f'at the corner of row {corner[0]}, column {corner[1]}'
+                )
+    return found
 
 
 def _all_blocked(cells: NDArray[np.bool_], height: int, width: int) -> NDArray[np.bool_]:
@@ -230,33 +266,19 @@ def _meets_boxes(a: NDArray, b: NDArray, low: NDArray, high: NDArray) -> NDArray
     return ~(apart | (np.abs(height) > reach))
 
 
-def _squeezes(
-    a: NDArray, b: NDArray, near: NDArray[np.bool_], first_row: int, first_col: int
-) -> list[str]:
-    """Return the corners, shared by two diagonal obstacles only, that a segment goes through."""
-    lower_left, lower_right = near[:-1, :-1], near[:-1, 1:]
-    upper_left, upper_right = near[1:, :-1], near[1:, 1:]
-    rising = lower_left & upper_right & ~lower_right & ~upper_left
-    falling = lower_right & upper_left & ~lower_left & ~upper_right
-    found = []
-    for corners, slope in ((rising, 1.0), (falling, -1.0)):
-        for row, col in np.argwhere(corners) + (first_row + 1, first_col + 1):
-            # The bar from one obstacle to the other lies on y = slope * x seen from the corner.
-            (ax, ay), (bx, by) = a - (col, row), b - (col, row)
-            a_side, b_side = ay - slope * ax, by - slope * bx
-            if a_side * b_side > 0.0:
-                continue
-            if a_side == b_side:
-                crossed = sorted((ax, bx))
-            else:
-                crossed = [ax + (bx - ax) * a_side / (a_side - b_side)] * 2
-            # Somewhat longer than the gap, so that nothing slips in between bar and square.
-            if crossed[0] <= 2 * TOLERANCE and crossed[1] >= -2 * TOLERANCE:
-                found.append(
-                    'squeezes between two diagonal blocked cells '
-                    f'at the corner of row {row}, column {col}'
-                )
-    return found
+def _squeezes(a: NDArray, b: NDArray, row: int, col: int, slope: float) -> bool:
+    """Return whether a segment goes through a corner that two diagonal obstacles share."""
+    # The bar from one obstacle to the other lies on y = slope * x seen from the corner.
+    (ax, ay), (bx, by) = a - (col, row), b - (col, row)
+    a_side, b_side = ay - slope * ax, by - slope * bx
+    if a_side * b_side > 0.0:
+        return False
+    if a_side == b_side:
+        crossed = sorted((ax, bx))
+    else:
+        crossed = [ax + (bx - ax) * a_side / (a_side - b_side)] * 2
+    # Somewhat longer than the gap, so that nothing slips in between bar and square.
+    return crossed[0] <= 2 * TOLERANCE and crossed[1] >= -2 * TOLERANCE
 
 
 def _entered(row: int, col: int, height: int, width: int) -> str:

@@ -1,22 +1,110 @@
-"""What holds for every test, and what is done once before the first one."""
+"""
+What holds for every test, and what is done once before the first one.
 
+The kernels of requests on grids are compiled before the first test. Tests wait for the machine
+code of all others, too. Those marked ``interpreted`` do not: what has no machine code by then runs
+interpreted, which gives the same to the last bit, and which costs less than compiling it for a few
+calls. With ``HNR_COMPILE_ALL`` set the mark means nothing.
+"""
+
+import fcntl
 import os
+import subprocess
+import sys
+from typing import Any
 
 from hnr_planner.core import warm_up
 from hnr_planner.core.kernels import modes
+from hnr_planner.core.kernels.cache_folder import cache_folder
 import pytest
 
-# Tests run machine code and wait for it to be compiled, in processes that they start as well.
-modes.set_mode(os.environ.setdefault(modes.VARIABLE, 'compiled'))
+# Processes that tests start wait for machine code, unless a test says otherwise.
+MODE = os.environ.setdefault(modes.VARIABLE, 'compiled')
+MARKS_COUNT = MODE == 'compiled' and not os.environ.get('HNR_COMPILE_ALL')
+# Workers collect while all that most tests need is being compiled elsewhere.
+modes.set_mode('interpreted')
 # Set before the first message class is imported.
 # Without these checks a field of the wrong type goes out as garbage, silently.
 os.environ['ROS_PYTHON_CHECK_FIELDS'] = '1'
+# Of several workers each has one core: threads that wait for a busy one burn what they wait for.
+os.environ.setdefault('OPENBLAS_NUM_THREADS', '1')
 # No test talks to another machine.
 os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'LOCALHOST'
 
+#: Folders and files that take longest, so that no worker has one of them left at the end.
+FIRST = (
+    'test/laws/',
+    'test/experiments/test_experiments.py',
+    'test/core/sampling/test_walk_laws.py',
+    'test/core/planning/test_spaces.py',
+    'test/core/kernels/test_tiers.py',
+    'test/cli/test_readme.py',
+    'test/cli/test_demo.py',
+    'test/core/planning/',
+    'test/core/kernels/',
+    'test/core/sampling/',
+    'test/core/trajectories/',
+    'test/test_package.py',
+    'test/ros/',
+)
+#: Folders whose tests all run in one worker, since they share kernels that nobody else needs.
+TOGETHER = ('test/laws/',)
+WARM_UP = 'from hnr_planner.core import warm_up; warm_up()'
+
 
 def pytest_sessionstart(session: pytest.Session) -> None:
-    """Compile before the workers begin: each would do it by itself, and nodes would be late."""
-    is_worker = hasattr(session.config, 'workerinput')
-    if not is_worker and not session.config.option.collectonly:
+    """Start to compile before the workers do: each would do it by itself, and nodes be late."""
+    config = session.config
+    if config.pluginmanager.hasplugin('dsession') and not config.option.collectonly:
+        # The process holds the lock until it ends, however that happens.
+        lock = _lock(fcntl.LOCK_EX)
+        warming = subprocess.Popen([sys.executable, '-c', WARM_UP], pass_fds=[lock])
+        os.close(lock)
+        config.add_cleanup(warming.wait)
+        config.add_cleanup(warming.kill)  # cleanups run in the reverse order
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Put first what takes longest; else the order stays."""
+
+    def turn(item: pytest.Item) -> int:
+        return next(
+            (k for k, path in enumerate(FIRST) if item.nodeid.startswith(path)), len(FIRST)
+        )
+
+    items.sort(key=turn)
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
+    """Return the scheduler that gives whole files to workers, and whole folders in TOGETHER."""
+    from xdist.scheduler import LoadFileScheduling
+
+    class Scheduler(LoadFileScheduling):
+        def _split_scope(self, nodeid: str) -> str:
+            folder = next((path for path in TOGETHER if nodeid.startswith(path)), None)
+            return folder or super()._split_scope(nodeid)
+
+    return Scheduler(config, log) if config.option.dist == 'loadfile' else None
+
+
+def pytest_collection_finish(session: pytest.Session) -> None:
+    """Wait until all is compiled that most tests need, and load it."""
+    is_controller = session.config.pluginmanager.hasplugin('dsession')
+    if not is_controller and not session.config.option.collectonly:
+        os.close(_lock(fcntl.LOCK_SH))
         warm_up()
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_runtest_setup(item: pytest.Item) -> None:
+    """Set what happens when a test calls a kernel that has no machine code."""
+    is_marked = item.get_closest_marker('interpreted') is not None
+    modes.set_mode('interpreted' if is_marked and MARKS_COUNT else MODE)
+
+
+def _lock(kind: int) -> int:
+    """Return the open file of a lock that all processes of the tests share, once it is had."""
+    file = os.open(cache_folder() / 'warm_up.lock', os.O_CREAT | os.O_RDWR, 0o644)
+    fcntl.flock(file, kind)
+    return file

@@ -26,6 +26,10 @@ ALPHA = 1e-6 / 150
 """Right walks have fewer p-values than 150: with fresh seeds, one run in 1e6 would fail."""
 
 
+N_ONE_STEP = 300_000
+"""Steps from one point: with so many, T1 and T5 catch every mutant of the gate."""
+
+
 def one_step(
     region: Region, step: Step, point: ArrayLike, n: int, seed: int
 ) -> tuple[Points, Points]:

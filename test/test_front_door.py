@@ -42,6 +42,7 @@ PROMISED = {
     'Polyanya',
     'PolygonSpace',
     'PolytopeSpace',
+    'PoseSpace',
     'ProductSpace',
     'RRT',
     'RRTConnect',

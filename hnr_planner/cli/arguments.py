@@ -313,7 +313,7 @@ def keep_map_files(map_file: str | Path, *outputs: Path | None) -> None:
 
     """
     from hnr_planner.maps import is_moving_ai
-    from hnr_planner.maps.map_server import read_header
+    from hnr_planner.maps.map_header import read_header
 
     inputs = [Path(map_file)]
     if not is_moving_ai(map_file):

@@ -43,6 +43,7 @@ from hnr_planner.core.spaces import OracleError as OracleError
 from hnr_planner.core.spaces import OracleSpace as OracleSpace
 from hnr_planner.core.spaces import PolygonSpace as PolygonSpace
 from hnr_planner.core.spaces import PolytopeSpace as PolytopeSpace
+from hnr_planner.core.spaces import PoseSpace as PoseSpace
 from hnr_planner.core.spaces import ProductSpace as ProductSpace
 from hnr_planner.core.spaces import ShearedSpace as ShearedSpace
 from hnr_planner.core.spaces import Space as Space

@@ -1,14 +1,18 @@
 """The planning server: admits each request, does its work and counts its response."""
 
 from collections.abc import Callable
+from contextlib import suppress
 import threading
 import traceback
 from typing import TypeVar
 
+from hnr_planner.core.planning.planner import Planner
+from hnr_planner.server.map_store import MapSnapshot
 from hnr_planner.server.outcomes import Outcome, Refusal
 from hnr_planner.server.requests import PlanRequest
 from hnr_planner.server.respond import respond, ToFrame
 from hnr_planner.server.responses import PlanResponse, Response, SampleResponse
+from hnr_planner.server.roadmaps import Roadmaps
 from hnr_planner.server.sampling import draw
 from hnr_planner.server.searches import RunningSearches
 from hnr_planner.server.settings import Settings
@@ -48,15 +52,45 @@ class PlanningServer:
         self._report_defect = report_defect
         self.searches = RunningSearches()
         self.statistics = Statistics()
+        self.roadmaps = Roadmaps(report_defect)
 
-    def plan(self, request: PlanRequest, cancel: threading.Event | None = None) -> PlanResponse:
-        """Return the response to ``request``; its search ends when ``cancel`` is set."""
+    def plan(
+        self,
+        request: PlanRequest,
+        cancel: threading.Event | None = None,
+        arrived: float | None = None,
+    ) -> PlanResponse:
+        """
+        Return the response to ``request``; its search ends when ``cancel`` is set.
+
+        ``arrived`` is when the request arrived, by ``time.monotonic`` [s]; now when left out.
+        """
         settings, event = self._settings(), cancel or threading.Event()
         return self._counted(
             event,
-            lambda: respond(request, settings, self._newest_map, event, self._to_frame),
+            lambda: respond(
+                request,
+                settings,
+                self._newest_map,
+                event,
+                self._to_frame,
+                arrived,
+                self._planner_for,
+            ),
             lambda refusal: PlanResponse(refusal.outcome, refusal.why, request),
         )
+
+    def follow_map(self) -> None:
+        """Keep a roadmap of the newest map if the parameter ``roadmap`` is set; else none."""
+        if not self._settings().roadmap:
+            self.roadmaps.forget()
+            return
+        with suppress(Refusal):
+            self.roadmaps.follow(self._newest_map())
+
+    def _planner_for(self, algorithm: str, snapshot: MapSnapshot) -> str | Planner:
+        """Return the roadmap of a map for the algorithm auto, if it is ready; else the name."""
+        return (algorithm == 'auto' and self.roadmaps.of(snapshot)) or algorithm
 
     def sample(self) -> SampleResponse:
         """Draw points of the free space by the parameters in force, and return the response."""

@@ -22,6 +22,7 @@ from hnr_planner.core import (
 )
 from hnr_planner.core.kernels.kernel import interpreted_calls
 from hnr_planner.core.planning.escape import escape_point
+from hnr_planner.core.planning.planner import Planner
 from hnr_planner.core.planning.tiers import remark_since, tier_since
 from hnr_planner.server.limits import RequestLimits
 from hnr_planner.server.map_store import MapSnapshot
@@ -31,6 +32,7 @@ from hnr_planner.server.poses import MOST_POSES, pose_rows
 from hnr_planner.server.requests import check_request, PlanRequest, Pose
 from hnr_planner.server.responses import PlanResponse
 from hnr_planner.server.settings import Settings
+from hnr_planner.server.times import Times
 from hnr_planner.server.trajectories import trajectory_path
 from hnr_planner.server.waiting import NewestMap, wait_for_map
 from hnr_planner.server.waypoints import joined
@@ -38,6 +40,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 ToFrame = Callable[[Pose, str], Pose]
+PlannerFor = Callable[[str, MapSnapshot], str | Planner]
 
 #: Time [s] that measuring the clearance of a path gets even when the time limit has passed.
 MEASURING_TIME = 0.02
@@ -54,12 +57,19 @@ def only_same_frame(pose: Pose, frame: str) -> Pose:
     return replace(pose, frame=frame)
 
 
+def planner_by_name(algorithm: str, _snapshot: MapSnapshot) -> str:
+    """Return the name of the planner for an algorithm, which is the algorithm's own."""
+    return algorithm
+
+
 def respond(
     request: PlanRequest,
     settings: Settings,
     newest_map: NewestMap,
     cancel: threading.Event,
     to_frame: ToFrame = only_same_frame,
+    arrived: float | None = None,
+    planner_for: PlannerFor = planner_by_name,
 ) -> PlanResponse:
     """
     Plan for ``request`` and return a response that says how planning ended.
@@ -79,30 +89,43 @@ def respond(
     to_frame : callable
         Transforms a pose into the frame whose name it is given, or raises Refusal (BAD_FRAME);
         the name of the pose is put before the words of the refusal.
+    arrived : float, optional
+        When the request arrived, by ``time.monotonic`` [s]; now when left out.
+    planner_for : callable
+        Returns the planner for the name of an algorithm and a map.
 
     """
-    began, before = time.monotonic(), interpreted_calls()
+    arrived = time.monotonic() if arrived is None else arrived
+    before, times = interpreted_calls(), Times()
     limits = RequestLimits.from_now(settings.time_limit, cancel)
     snapshot = None
     try:
         check_request(request)
-        snapshot = wait_for_map(newest_map, settings.patience, cancel)
-        job = _Job(settings, newest_map, to_frame, limits)
+        with times.phase('map'):
+            snapshot = wait_for_map(newest_map, settings.patience, cancel)
+        job = _Job(settings, newest_map, to_frame, limits, times, planner_for)
         response = job.plan_for_newest_map(request, snapshot)
     except Refusal as refusal:
         why = refusal.why + (remark_since(before) if limits.hold() else '')
         response = PlanResponse(refusal.outcome, why, request, snapshot=snapshot)
-    return replace(response, elapsed=time.monotonic() - began, tier=tier_since(before))
+    elapsed = time.monotonic() - arrived
+    return replace(response, elapsed=elapsed, times=times, tier=tier_since(before))
 
 
 @dataclass(frozen=True)
 class _Job:
-    """The work for one request; ``limits`` hold for all its searches and checks together."""
+    """
+    The work for one request.
+
+    ``limits`` hold for all its searches and checks together, which add to ``times``.
+    """
 
     settings: Settings
     newest_map: NewestMap
     to_frame: ToFrame
     limits: RequestLimits
+    times: Times
+    planner_for: PlannerFor
 
     def plan_for_newest_map(self, request: PlanRequest, snapshot: MapSnapshot) -> PlanResponse:
         """
@@ -118,9 +141,12 @@ class _Job:
                 raise self._map_changed()
             if not response.solved:
                 return response
-            newer = self.newest_map()
-            if newer.number == snapshot.number or self._is_still_free(response, newer):
-                return self._finished(replace(response, snapshot=newer), newer)
+            with self.times.phase('map'):
+                newer = self.newest_map()
+                same = newer.number == snapshot.number or self._is_still_free(response, newer)
+            if same:
+                with self.times.phase('message'):
+                    return self._finished(replace(response, snapshot=newer), newer)
             if self.limits.time_is_up:
                 raise self._map_changed()
             snapshot = newer
@@ -140,10 +166,16 @@ class _Job:
             )
         if spacing < 0.0:
             spacing = snapshot.occupancy.resolution
+        orientation = response.goal_orientation
         return replace(
             response,
             clearance=self._clearance(path, snapshot),
-            poses=pose_rows(path, spacing, response.goal_orientation),
+            poses=pose_rows(path, spacing, orientation),
+            other_poses=tuple(
+                pose_rows(other, spacing, orientation)
+                for other in response.others
+                if self._is_free(other, response.escape, snapshot)
+            ),
         )
 
     def _clearance(self, path: NDArray[np.float64], snapshot: MapSnapshot) -> float:
@@ -156,6 +188,13 @@ class _Job:
     def _is_still_free(self, response: PlanResponse, newer: MapSnapshot) -> bool:
         """Return whether a newer map leaves a path free; False when the limits cut the check."""
         return self.limits.within(lambda: _is_still_free(response, newer), False)
+
+    def _is_free(self, path: NDArray[np.float64], escape: float, snapshot: MapSnapshot) -> bool:
+        """Return whether a path (m, 2) [m] is free from its escape on; False at a limit."""
+        free = path[1:] if escape > 0.0 else path
+        return self.limits.within(
+            lambda: snapshot.space.first_blocked_segment(free) is None, False, MEASURING_TIME
+        )
 
     def _map_changed(self) -> Refusal:
         """Return the refusal (MAP_CHANGED) for a blocked path and no time left to find another."""
@@ -178,7 +217,8 @@ class _Job:
             except Refusal as refusal:
                 raise Refusal(refusal.outcome, f'the {name} {refusal.why}') from refusal
 
-        start, *via, goal = (transform(name, pose) for name, pose in request.named_poses)
+        with self.times.phase('map'):
+            start, *via, goal = (transform(name, pose) for name, pose in request.named_poses)
         return replace(request, start=start, via=tuple(via), goal=goal)
 
     def _plan_legs(self, request: PlanRequest, snapshot: MapSnapshot) -> PlanResponse:
@@ -193,7 +233,7 @@ class _Job:
         legs: list[PlanResponse] = []
         start, ends = request.start, (*request.via, request.goal)
         for number, end in enumerate(ends, 1):
-            leg = self._plan(replace(request, start=start, via=(), goal=end), snapshot)
+            leg = self._plan(replace(request, start=start, via=(), goal=end), snapshot, n_paths=1)
             if not leg.solved:
                 return replace(leg, why=f'leg {number} of {len(ends)}: {leg.why}')
             legs.append(leg)
@@ -203,8 +243,17 @@ class _Job:
         why = '; '.join(f'leg {number}: {leg.why}' for number, leg in enumerate(legs, 1))
         return replace(legs[0], why=why, request=request, result=result)
 
-    def _plan(self, request: PlanRequest, snapshot: MapSnapshot) -> PlanResponse:
-        """Plan from the start to the goal on one map; the poses of ``via`` are not looked at."""
+    def _plan(
+        self, request: PlanRequest, snapshot: MapSnapshot, n_paths: int | None = None
+    ) -> PlanResponse:
+        """
+        Plan from the start to the goal on one map; the poses of ``via`` are not looked at.
+
+        ``n_paths`` is the number of alternatives, by default that of the parameters.
+        """
+        arguments = self.settings.plan_arguments
+        if n_paths is not None:
+            arguments['alternatives'] = n_paths
         try:
             if request.has_inertia:
                 return self._plan_trajectory(request, snapshot)
@@ -212,14 +261,15 @@ class _Job:
                 snapshot.space,
                 request.start.point,
                 request.goal.point,
-                algorithm=request.algorithm,
+                algorithm=self.planner_for(request.algorithm, snapshot),
                 goal_tolerance=request.tolerance,
                 time_limit=self.limits.time_left,
                 cancel=self.limits.cancel,
-                **self.settings.plan_arguments,
+                **arguments,
             )
         except RequestError as error:
             raise Refusal(Outcome.BAD_REQUEST, str(error)) from error
+        self.times.add_planning(result)
         return PlanResponse(
             Outcome[result.status.name],
             result.message,
@@ -279,7 +329,7 @@ class _Job:
             Whether ``goal`` stands in for a goal that could not be reached.
 
         """
-        return plan_trajectory(
+        result = plan_trajectory(
             snapshot.space,
             self.settings.system,
             (*request.start.point, 0.0, 0.0),
@@ -289,6 +339,8 @@ class _Job:
             cancel=self.limits.cancel,
             **self.settings.trajectory_arguments(request.algorithm, goal_is_moved=moved),
         )
+        self.times.add_planning(result)
+        return result
 
 
 def _is_still_free(response: PlanResponse, newer: MapSnapshot) -> bool:

@@ -1,10 +1,12 @@
 """Responses to requests for paths and for draws (random points of the free space), as data."""
 
 from abc import ABC, abstractmethod
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 import math
+from typing import Self
 
-from hnr_planner.core import FreeSpaceDraws
+from hnr_planner.core import FreeSpaceDraws, PlanResult
+from hnr_planner.core.lengths import path_length
 from hnr_planner.core.planning.result import SearchResult
 from hnr_planner.core.systems import Trajectory
 from hnr_planner.server.map_store import MapSnapshot
@@ -13,6 +15,7 @@ from hnr_planner.server.outcomes import Outcome
 from hnr_planner.server.path_validity import PlanarPose
 from hnr_planner.server.requests import PlanRequest
 from hnr_planner.server.settings import Settings
+from hnr_planner.server.times import Times
 import numpy as np
 from numpy.typing import NDArray
 
@@ -29,7 +32,9 @@ class Response(ABC):
     why : str
         The outcome in words, with the values that explain it.
     elapsed : float
-        Time from the request to this response [s], by ``time.monotonic``.
+        Time from the arrival of the request to this response [s], by ``time.monotonic``.
+    times : Times
+        Times of the phases of the request.
     tier : str
         'compiled' when machine code did all of the work, 'interpreted' when some of it ran in
         Python because its machine code was not available.
@@ -41,6 +46,7 @@ class Response(ABC):
     outcome: Outcome
     why: str
     elapsed: float = field(default=0.0, kw_only=True)
+    times: Times = field(default_factory=Times, kw_only=True)
     tier: str = field(default='compiled', kw_only=True)
     snapshot: MapSnapshot | None = field(default=None, kw_only=True)
 
@@ -58,6 +64,11 @@ class Response(ABC):
     @abstractmethod
     def algorithm(self) -> str:
         """Name of the planner of a path, or of the random walk of draws."""
+
+    def sent_after(self, seconds: float) -> Self:
+        """Return the response with the time [s] until it was sent added."""
+        times = replace(self.times, message_time=self.times.message_time + seconds)
+        return replace(self, elapsed=self.elapsed + seconds, times=times)
 
     @property
     def values(self) -> dict[str, str]:
@@ -84,6 +95,8 @@ class PlanResponse(Response):
         What the planner returned; None when nothing was planned.
     poses : (n, 7)
         Poses along the path: x, y, z [m] and the quaternion x, y, z, w; none unless solved.
+    other_poses : tuple of (n, 7)
+        Poses along each alternative, in the order of their lengths.
     trajectory : Trajectory, optional
         States over time of a robot with inertia; None for other robots, or when none was found.
     clearance : float
@@ -101,6 +114,7 @@ class PlanResponse(Response):
     request: PlanRequest
     result: SearchResult | None = None
     poses: NDArray[np.float64] = field(default_factory=lambda: np.empty((0, 7)))
+    other_poses: tuple[NDArray[np.float64], ...] = ()
     trajectory: Trajectory | None = None
     clearance: float = math.nan
     escape: float = 0.0
@@ -122,6 +136,16 @@ class PlanResponse(Response):
         if self.solved and self.result is not None:
             return self.result.path
         return np.empty((0, 2))
+
+    @property
+    def poses_of_all(self) -> tuple[NDArray[np.float64], ...]:
+        """Poses (n, 7) along the path and along each alternative; none unless solved."""
+        return (self.poses, *self.other_poses) if len(self.poses) else ()
+
+    @property
+    def others(self) -> tuple[NDArray[np.float64], ...]:
+        """Alternatives (m, 2) to the path [m], in the order of their lengths."""
+        return self.result.others if self.solved and isinstance(self.result, PlanResult) else ()
 
     @property
     def free_path(self) -> NDArray[np.float64]:
@@ -165,12 +189,20 @@ class PlanResponse(Response):
             'seed': str(result.seed),
             'iterations': str(result.iterations),
             'samples': str(len(result.samples)),
-            'planning_time': f'{result.elapsed:.6f}',
+            'planning_time': f'{self.elapsed:.6f}',
+            **{name: f'{n:.6f}' for name, n in asdict(self.times).items()},
             'first_solution_time': f'{first.elapsed if first else math.nan:.6f}',
             'first_solution_length': f'{first.length if first else math.nan:.6g}',
             'length': f'{result.length if self.solved else math.nan:.6g}',
+            'alternatives': str(len(self.poses_of_all)),
+            'alternative_lengths': ' '.join(f'{_length(rows):.6g}' for rows in self.poses_of_all),
             'cut_by_time': str(bool(result.cut_by_time)).lower(),
         }
+
+
+def _length(rows: NDArray[np.float64]) -> float:
+    """Return the length [m] of a path through poses (n, 7)."""
+    return path_length(rows[:, :2])
 
 
 @dataclass(frozen=True)

@@ -17,6 +17,9 @@ from hnr_planner.server.rules import Rule, setting, SettingsError
 #: Largest value of an integer parameter.
 LARGEST_INT = 2**31 - 1
 
+#: Most paths that a request may find.
+MOST_ALTERNATIVES = 16
+
 #: Names of all planners that a request may ask for.
 SERVED_ALGORITHMS = (*ALGORITHMS, *KINODYNAMIC_PLANNERS)
 
@@ -75,6 +78,26 @@ class Settings:
         's',
         lower=0.0,
         upper=3600.0,
+    )
+    clearance: float = setting(
+        0.0,
+        'Distance to obstacles that a path keeps where it can; narrower passages are passed in '
+        'their middle. 0: the shortest path. It needs simplify.',
+        'm',
+        lower=0.0,
+        upper=1000.0,
+    )
+    alternatives: int = setting(
+        1,
+        'Paths to find, none of which can be deformed into another past an obstacle: ~/paths has '
+        'all of them. With more than 1 it needs simplify.',
+        lower=1,
+        upper=MOST_ALTERNATIVES,
+    )
+    roadmap: bool = setting(
+        False,
+        'Build a roadmap of each map in the background, and plan with it under the algorithm '
+        'auto once it is ready.',
     )
     max_acceleration: float = setting(
         1.0,
@@ -199,7 +222,7 @@ class Settings:
         Raise SettingsError where a value is not allowed.
 
         Checks are the rule of each parameter, the values between -1 and 0 of ``pose_spacing`` and
-        ``goal_speed``, and the form of each alias.
+        ``goal_speed``, what needs ``simplify``, and the form of each alias.
         """
         object.__setattr__(self, 'planner_aliases', tuple(self.planner_aliases))
         for name, rule in RULES.items():
@@ -208,6 +231,11 @@ class Settings:
             raise SettingsError(
                 f'pose_spacing must be -1 (the resolution of the map), 0 (vertices only) or '
                 f'positive, got {self.pose_spacing!r}'
+            )
+        if not self.simplify and (self.clearance > 0.0 or self.alternatives > 1):
+            raise SettingsError(
+                'clearance must be 0 and alternatives 1 where simplify is false, got '
+                f'{self.clearance!r} and {self.alternatives!r}'
             )
         if -1.0 < self.goal_speed < 0.0:
             raise SettingsError(
@@ -278,7 +306,12 @@ class Settings:
     @property
     def plan_arguments(self) -> dict[str, Any]:
         """Arguments of ``plan`` that the parameters alone decide, by name."""
-        return {**self._search_arguments, 'start_escape': self.escape_radius}
+        return {
+            **self._search_arguments,
+            'clearance': self.clearance,
+            'alternatives': self.alternatives,
+            'start_escape': self.escape_radius,
+        }
 
     @property
     def _search_arguments(self) -> dict[str, Any]:

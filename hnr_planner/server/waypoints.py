@@ -21,7 +21,8 @@ def joined(results: Sequence[PlanResult]) -> PlanResult:
     samples are concatenated in the order of the legs, and parents are renumbered to the rows of
     the concatenated samples (-1 stays). Lengths, lower bounds, times, iterations and counts are
     summed; the planners of all legs are named, each once. ``cut_by_time`` is true when it is for
-    any leg, the goal offset is that of the last leg, and there is no first solution. What is not
+    any leg, the goal offset is that of the last leg, and there are no first solution and no
+    alternatives. What is not
     named here, such as the seed, is that of the first leg.
     """
     first, *others = results
@@ -39,6 +40,7 @@ def joined(results: Sequence[PlanResult]) -> PlanResult:
         first,
         planner=', '.join(dict.fromkeys(result.planner for result in results)),
         message=f'path through {len(others)} poses on the way',
+        others=(),
         path=np.vstack([first.path, *(result.path[1:] for result in others)]),
         length=sum(result.length for result in results),
         lower_bound=sum(result.lower_bound for result in results),

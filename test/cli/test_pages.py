@@ -9,6 +9,7 @@ from test.cli.conftest import ROOT
 from test.cli.pictures import check_picture
 
 from hnr_planner.core.kernels import modes
+from hnr_planner.core.kernels.cache_folder import cache_folder, cache_home
 from hnr_planner.core.planning.registry import PLANNERS
 from PIL import Image
 import pytest
@@ -39,6 +40,7 @@ def run(command: list[str], folder: Path, mode: modes.Mode = modes.Mode.COMPILED
         cwd=folder,
         env={
             'PYTHONPATH': str(ROOT),
+            'NUMBA_CACHE_DIR': str(cache_home(cache_folder())),
             'PATH': f'{Path(sys.executable).parent}:/usr/bin:/bin',
             modes.VARIABLE: mode.value,
         },

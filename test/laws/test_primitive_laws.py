@@ -5,6 +5,7 @@ The laws of the primitives that composed spaces are made of, held on every compi
 """
 
 from test.laws.test_space_laws import random_points, rounding, size, tolerance
+from typing import NamedTuple
 
 from hnr_planner.core.kernels.kernel import interpreted, kernel
 from hnr_planner.core.spaces import primitives
@@ -16,20 +17,29 @@ N = 300
 ALONG = 400
 
 
+class Line(NamedTuple):
+    """What the primitives return about a line."""
+
+    #: Whether the closure holds its point at 0.
+    touches: bool
+    #: The first parameter from ``t`` on at which it enters, and at which it leaves, the space.
+    enters: float
+    leaves: float
+
+
 @kernel
+def line(space, x, u, t):
+    """Return all of it: one kernel is quicker to compile for each kind of space than three."""
+    return Line(
+        primitives.touches(space, x),
+        primitives.first_entry(space, x, u, t),
+        primitives.first_exit(space, x, u, t, np.inf),
+    )
+
+
 def touching(space, points):
-    """Say which of ``points`` (k, dim) the closure holds."""
-    return np.array([primitives.touches(space, x) for x in points])
-
-
-@kernel
-def entering(space, x, u, t):
-    return primitives.first_entry(space, x, u, t)
-
-
-@kernel
-def leaving(space, x, u, t, horizon):
-    return primitives.first_exit(space, x, u, t, horizon)
+    """Return which of ``points`` (k, dim) the closure holds."""
+    return [line(space, x, np.ones_like(x), 0.0).touches for x in points]
 
 
 def beyond_rounding(space):
@@ -50,7 +60,7 @@ def lines(space, rng):
 
 def test_the_closure_holds_every_free_point(space, rng):
     points = random_points(space, rng, 20 * N)
-    assert touching(space.compiled, points[space.contains(points)]).all()
+    assert all(touching(space.compiled, points[space.contains(points)]))
 
 
 def test_the_closure_holds_the_ends_of_chords(space, rng):
@@ -62,14 +72,14 @@ def test_the_closure_holds_the_ends_of_chords(space, rng):
         step = beyond_rounding(space) / np.linalg.norm(direction)
         at = np.array([lower - step, lower + step, upper - step, upper + step])
         ends = point + at[:, np.newaxis] * direction
-        assert touching(space.compiled, ends).tolist() == [False, True, True, False]
+        assert touching(space.compiled, ends) == [False, True, True, False]
 
 
 def test_nothing_is_free_before_a_line_enters_and_something_after_it(space, rng):
     verdicts = set()
     for point, direction in lines(space, rng):
-        first = entering(space.compiled, point, direction, 0.0)
-        assert (first == 0.0) == bool(touching(space.compiled, point[np.newaxis])[0])
+        touches, first, _ = line(space.compiled, point, direction, 0.0)
+        assert (first == 0.0) == touches
         before = np.linspace(0.0, min(first, 3.0), ALONG)[:-1, np.newaxis]
         assert first == 0.0 or not space.contains(point + before * direction).any()
         if first < np.inf:
@@ -82,25 +92,25 @@ def test_nothing_is_free_before_a_line_enters_and_something_after_it(space, rng)
 def test_a_line_that_is_in_stays_where_it_is_and_one_that_is_out_too(space, rng):
     for point, direction in lines(space, rng):
         t = rng.uniform(0.0, 1.0)
+        _, entry, end = line(space.compiled, point, direction, t)
         if space.contains(point + t * direction):
-            assert entering(space.compiled, point, direction, t) == t
-            assert leaving(space.compiled, point, direction, t, np.inf) > t
+            assert entry == t
+            assert end > t
         else:
-            assert leaving(space.compiled, point, direction, t, np.inf) == t
+            assert end == t
 
 
 def test_a_line_leaves_where_it_would_have_left_from_anywhere_before(space, rng):
     for point, direction in lines(space, rng):
         _, upper = chord_or_empty(space.compiled, point, direction)
         for t in rng.uniform(0.0, 1.0, 3) * upper:
-            end = leaving(space.compiled, point, direction, t, np.inf)
+            end = line(space.compiled, point, direction, t).leaves
             assert end == pytest.approx(upper, abs=1e-9)
 
 
 def test_interpreted_and_compiled_answer_alike(space, rng):
     for (point, direction), _ in zip(lines(space, rng), range(30), strict=False):
-        for function, rest in ((leaving, (0.0, np.inf)), (entering, (0.0,))):
-            compiled = function(space.compiled, point, direction, *rest)
-            with np.errstate(divide='ignore', invalid='ignore', over='ignore'):
-                plain = interpreted(function)(space.compiled, point, direction, *rest)
-            assert compiled == plain
+        compiled = line(space.compiled, point, direction, 0.0)
+        with np.errstate(divide='ignore', invalid='ignore', over='ignore'):
+            plain = interpreted(line)(space.compiled, point, direction, 0.0)
+        assert compiled == plain

@@ -12,6 +12,7 @@ from hnr_planner.core import (
     Space,
     UnionSpace,
 )
+from hnr_planner.core.kernels.modes import Mode, mode_of_thread
 from hnr_planner.core.spaces.curves.curve import (
     Arc,
     first_exit_on_curve,
@@ -65,10 +66,13 @@ def points_on(curve: Any, t: Any) -> Any:
 CASES = [(name, space) for name, space in [*PLANE.items(), *SOLID.items()]]
 
 
+@pytest.mark.interpreted
 @pytest.mark.parametrize(('name', 'space'), CASES, ids=[name for name, _ in CASES])
 def test_contact_lies_between_the_last_free_look_and_the_next(name: str, space: Space) -> None:
     rng = np.random.default_rng(7)
     lower, upper = space.bounds
+    with mode_of_thread(Mode.COMPILED):
+        space.contains(lower)  # from now on machine code, since it is asked of many points
     contacts = free = 0
     while contacts + free < 150:
         x = rng.uniform(lower, upper)

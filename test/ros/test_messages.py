@@ -5,14 +5,16 @@ import math
 from test.ros.harness import points_in, set_field
 
 from builtin_interfaces.msg import Time
+from geometry_msgs.msg import Quaternion, Transform, Vector3
 from hnr_planner.core import GridSpace, plan
 from hnr_planner.core.systems import DoubleIntegrator, Trajectory
 from hnr_planner.maps import OccupancyMap
+from hnr_planner.ros.messages.cdr import with_elements
 from hnr_planner.ros.messages.maps import map_from_message, message_from_map
 from hnr_planner.ros.messages.markers import serialised_markers
 from hnr_planner.ros.messages.paths import path_message, serialised_path
+from hnr_planner.ros.messages.plan_responses import PlanResponses
 from hnr_planner.ros.messages.samples import LAYOUT, samples_message
-from hnr_planner.ros.messages.serialised_response import PlanResponses
 from hnr_planner.ros.messages.trajectories import serialised_trajectory
 from hnr_planner.server.map_store import MapSnapshot
 from hnr_planner.server.outcomes import Outcome
@@ -26,6 +28,7 @@ from nav_msgs.srv import GetPlan
 import numpy as np
 import pytest
 from rclpy.serialization import deserialize_message, serialize_message
+from sensor_msgs.msg import MultiDOFJointState
 from std_msgs.msg import Header
 from trajectory_msgs.msg import MultiDOFJointTrajectory
 from visualization_msgs.msg import Marker, MarkerArray
@@ -173,17 +176,38 @@ def test_response_from_bytes_is_the_ordinary_one(frame: str, n_poses: int) -> No
     header = Header(stamp=STAMP, frame_id=frame)
     responses = PlanResponses()
     assert responses.why_slow == ''
-    made = responses.make(rows, header)
+    made = responses.make(rows, header, serialised_path(rows, header))
     assert isinstance(made, GetPlan.Response) and made.plan.poses == [], 'no object for a pose'
     sent = deserialize_message(serialize_message(made), GetPlan.Response)
     assert sent == GetPlan.Response(plan=path_message(rows, header))
+
+
+@pytest.mark.parametrize('n_elements', [0, 1, 2, 3, 50])
+def test_sequence_amid_a_message_is_spliced_in(n_elements: int) -> None:
+    rows = np.random.default_rng(n_elements).normal(size=(n_elements, 7))
+
+    def joints(count: int) -> MultiDOFJointState:
+        poses = [
+            Transform(
+                translation=Vector3(**dict(zip('xyz', row[:3], strict=True))),
+                rotation=Quaternion(**dict(zip('xyzw', row[3:], strict=True))),
+            )
+            for row in rows[:count].tolist()
+        ]
+        return MultiDOFJointState(header=HEADER, joint_names=['a', 'bc'], transforms=poses)
+
+    short = [serialize_message(joints(count)) for count in range(3)]
+    # Two empty sequences follow, each of which is its length.
+    spliced = with_elements(short, [(56, rows)], n_after=8)
+    assert deserialize_message(spliced, MultiDOFJointState) == joints(n_elements)
 
 
 def test_response_is_the_ordinary_one_where_bytes_do_not_work() -> None:
     responses = PlanResponses()
     responses.why_slow = 'another rclpy'
     rows = np.random.default_rng(0).normal(size=(3, 7))
-    assert responses.make(rows, HEADER).plan == path_message(rows, HEADER)
+    made = responses.make(rows, HEADER, serialised_path(rows, HEADER))
+    assert made.plan == path_message(rows, HEADER)
 
 
 def trajectory(n_points: int) -> Trajectory:

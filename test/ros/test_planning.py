@@ -9,13 +9,16 @@ from test.ros.harness import (
     points_in,
     points_of,
     pose,
+    stamp_of,
     until,
     yaws_of,
 )
 from test.ros.rooms import DATA, GOAL, in_map, ORIGIN, RESOLUTION, START
+import time
 
 from diagnostic_msgs.msg import DiagnosticArray
 from hnr_planner.server.outcomes import Outcome
+from nav_msgs.msg import Path
 import numpy as np
 import pytest
 from rclpy.qos import QoSProfile
@@ -96,6 +99,38 @@ def test_samples_markers_path_and_outcome_bear_the_stamp_of_the_answer(client: C
         'start',
         'goal',
     ]
+
+
+def test_alternatives_have_a_message_each_with_one_stamp(client: Client) -> None:
+    paths = client.listen(Path, '/hnr_planner/paths')
+    client.set_parameters(alternatives=2)
+    path = client.plan(pose(*START), pose(*GOAL))
+    client.set_parameters(alternatives=1)
+    _, values = client.outcome_of(path)
+    count = int(values['alternatives'])
+
+    def alternatives() -> list[Path]:
+        return [one for one in list(paths) if stamp_of(one) == stamp_of(path)]
+
+    until(lambda: len(alternatives()) >= count, 'all alternatives')
+    first, *others = (points_of(one) for one in alternatives())
+    assert np.array_equal(first, points_of(path)) and len(others) == count - 1
+    for points in others:
+        assert points[[0, -1]].tolist() == first[[0, -1]].tolist()
+
+
+def test_outcome_says_where_the_time_went(client: Client) -> None:
+    began = time.monotonic()
+    path = client.plan(pose(*START), pose(*GOAL))
+    round_trip = time.monotonic() - began
+    _, values = client.outcome_of(path)
+    elapsed = float(values['elapsed'])
+    phases = [float(values[f'{name}_time']) for name in ('map', 'search', 'shortening', 'message')]
+    assert min(phases) >= 0.0 and min(phases[1:]) > 0.0
+    assert sum(phases) <= elapsed + 1e-5
+    assert values['planning_time'] == values['elapsed']
+    # What waits for the interpreter after sending counts as sending, up to a limit.
+    assert elapsed - phases[3] <= round_trip
 
 
 def test_two_trees_have_two_roots_start_and_goal(client: Client) -> None:

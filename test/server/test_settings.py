@@ -63,6 +63,9 @@ def test_configuration_states_units_and_ranges() -> None:
         ('sample_radius', -0.1, '0..1000 m'),
         ('sample_thin', 0, '1..100000'),
         ('map_wait', -1.0, '0..3600 s'),
+        ('clearance', -0.1, '0..1000 m'),
+        ('alternatives', 0, '1..16'),
+        ('alternatives', 17, '1..16'),
     ],
 )
 def test_impossible_value_is_refused_with_value_and_rule(
@@ -73,6 +76,13 @@ def test_impossible_value_is_refused_with_value_and_rule(
     assert name in str(refusal.value)
     assert repr(value) in str(refusal.value)
     assert words in str(refusal.value)
+
+
+@pytest.mark.parametrize(('name', 'value'), [('clearance', 0.5), ('alternatives', 2)])
+def test_what_needs_shortening_is_refused_without(name: str, value: float) -> None:
+    with pytest.raises(SettingsError, match='simplify is false') as refusal:
+        dataclasses.replace(DEFAULTS, simplify=False, **{name: value})
+    assert repr(value) in str(refusal.value)
 
 
 @pytest.mark.parametrize('alias', ['GridBased', ':auto', 'GridBased:a_star', 'GridBased:'])

@@ -17,7 +17,7 @@ import sys
 import threading
 from typing import Any, BinaryIO
 
-from hnr_planner.core.kernels.compilation import Notice
+from hnr_planner.core.kernels.background import Notice
 from hnr_planner.core.kernels.needs import Need, Workload
 from hnr_planner.core.kernels.workloads import needs_of
 

@@ -60,6 +60,8 @@ class Attempt(NamedTuple):
         Name of the planner that made the path.
     lower_bound : float
         Lower bound on the length of free paths from start to goal [m].
+    work : Work
+        Work of the search, and of the one for the shortest path where there was one.
 
     """
 
@@ -70,6 +72,7 @@ class Attempt(NamedTuple):
     first: FirstSolution | None
     planner: str
     lower_bound: float
+    work: Work
 
 
 def attempt(
@@ -84,25 +87,29 @@ def attempt(
 
     ``number`` selects the random streams, and ``began`` is the time at which the call began, on
     the clock of ``working_time`` [s]. With a budget for ``optimizing`` the planner ``Auto`` also
-    searches for the shortest path with Polyanya, where the path found is not straight, the space
-    is a ``GridSpace`` and the goal has no radius. The path of any other planner is only shortened
+    searches for the shortest path with Polyanya, where the space is a ``GridSpace`` and the path
+    found is longer than the straight distance. The path of any other planner is only shortened
     and moved away from walls.
     """
     status, search, path = _search(request, number, budget)
     planner = getattr(search, 'made_by', request.planner.name)
-    bound = _lower_bound(request, search)
+    bound, work = _lower_bound(request, search), Work.of(search)
     if status is not PlannerStatus.SOLVED:
-        return Attempt(status, search, path, math.inf, None, planner, bound)
+        return Attempt(status, search, path, math.inf, None, planner, bound, work)
     first = FirstSolution(working_time() - began, path_length(path), path)
     candidates = []
-    if len(path) > 2 and optimizing is not None and isinstance(request.planner, Auto):
-        shortest, bound = _shortest_path(request, optimizing)
+    is_auto_on_grid = isinstance(request.planner, Auto) and isinstance(request.space, GridSpace)
+    if optimizing is not None and is_auto_on_grid and first.length > PROVED * bound:
+        exact, shortest = _shortest_path(request, optimizing)
+        bound, work = _lower_bound(request, exact), work.plus(Work.of(exact))
         if shortest is not None:
             kept_clear = _with_cost(request, shortest, optimizing)
-            candidates.append(Attempt(status, search, *kept_clear, first, Polyanya.name, bound))
+            candidates.append(
+                Attempt(status, search, *kept_clear, first, Polyanya.name, bound, work)
+            )
     if request.clearance > 0.0 or not candidates:
         improved = _improved(request, number, search, path, budget)
-        candidates.append(Attempt(status, search, *improved, first, planner, bound))
+        candidates.append(Attempt(status, search, *improved, first, planner, bound, work))
     return min(candidates, key=lambda candidate: candidate.cost)
 
 
@@ -143,22 +150,29 @@ def optimize(
     """
     Search for better paths with further streams; return the best, and the work of all searches.
 
-    Each round is one further attempt. The rounds end when ``best`` is straight or proved to be
-    the shortest, after ``rounds`` rounds, after ``patience`` consecutive rounds that lower the
-    cost by less than the fraction ``LEAST_GAIN``, or when a limit of the budget is met. ``began``
-    is the time at which the call began, on the clock of ``working_time`` [s].
+    Each round is one further attempt. The rounds end when ``best`` is straight, proved to be the
+    shortest or found by a search that draws nothing, after ``rounds`` rounds, after ``patience``
+    consecutive rounds that lower the cost by less than the fraction ``LEAST_GAIN``, or when a
+    limit of the budget is met. ``began`` is the time at which the call began, on the clock of
+    ``working_time`` [s].
     """
-    work, number, idle = Work.of(best.search), 1, 0
+    work, number, idle = best.work, 1, 0
     while number <= rounds and idle < patience and budget.stop() is None:
-        if len(best.path) == 2 or best.cost <= PROVED * best.lower_bound:
+        if _is_best(request, best):
             break
         again = attempt(request, number, budget, began)
-        work = work.plus(Work.of(again.search))
+        work = work.plus(again.work)
         number += 1
         idle = 0 if again.cost < (1.0 - LEAST_GAIN) * best.cost else idle + 1
         if again.cost < best.cost:
             best = again._replace(lower_bound=best.lower_bound)
     return best, work
+
+
+def _is_best(request: Request, best: Attempt) -> bool:
+    """Return whether no further search can find a better path than that of ``best``."""
+    is_straight = len(best.path) == 2 and request.goal_radius == 0.0
+    return is_straight or best.search.taut or best.cost <= PROVED * best.lower_bound
 
 
 def with_clearance(request: Request, path: Floats, budget: Budget) -> Floats:
@@ -248,11 +262,6 @@ def _in_caller_s_frame(request: Request, points: Floats) -> Floats:
     return path
 
 
-def straight_length(request: Request) -> float:
-    """Return the straight distance [m] from the start to the goal region: no path is shorter."""
-    return max(math.dist(request.start, request.goal) - request.goal_radius, 0.0)
-
-
 def _lower_bound(request: Request, search: PathSearch) -> float:
     """
     Return a lower bound [m] on the length of free paths from start to goal.
@@ -260,27 +269,22 @@ def _lower_bound(request: Request, search: PathSearch) -> float:
     It is the bound of the search where that has one, and at least the straight distance.
     """
     bound = getattr(search, 'lower_bound', 0.0) * request.space.scale
-    return max(bound, straight_length(request))
+    return max(bound, request.straight_length)
 
 
-def _shortest_path(request: Request, budget: Budget) -> tuple[Floats | None, float]:
+def _shortest_path(request: Request, budget: Budget) -> tuple[PathSearch, Floats | None]:
     """
-    Return the shortest path (m, 2), caller's frame, or None, and a lower bound on its length [m].
+    Search a grid for the shortest path; return the search, and the path (m, 2), caller's frame.
 
-    The path is None where a limit is met first, where the space is no ``GridSpace``, or where the
-    goal has a radius above 0.
+    The path is None where a limit is met first.
     """
     space = request.space
-    if not isinstance(space, GridSpace) or request.goal_radius > 0.0:
-        return None, straight_length(request)
-    search = Polyanya(space).start(request.problem, request.stream(0))
-    status = run(search, budget)
-    bound = _lower_bound(request, search)
-    if status is not PlannerStatus.SOLVED:
-        return None, bound
+    search = Polyanya().for_space(space).start(request.problem, request.stream(0))
+    if run(search, budget) is not PlannerStatus.SOLVED:
+        return search, None
 
     def free_path() -> Floats | None:
         path = _in_caller_s_frame(request, search.path)
         return path if space.is_path_free(path) else None
 
-    return budget.within(free_path, None), bound
+    return search, budget.within(free_path, None)

@@ -96,6 +96,8 @@ class MovedRequest:
         Where the request is solved and the start was moved, all paths begin with the segment from
         the old start to the new one, and the lengths include it. The samples are left as they are.
         """
+        if not self.reasons:  # no move was tried
+            return result
         result = replace(result, message=result.message + self.reasons)
         if result.status is not PlannerStatus.SOLVED:
             return result

@@ -23,12 +23,11 @@ from hnr_planner.core.planning.attempts import (
     attempt,
     optimize,
     PROVED,
-    straight_length,
     with_clearance,
 )
 from hnr_planner.core.planning.ends import Allowance, check_allowance, move_ends, MovedRequest
 from hnr_planner.core.planning.limits import Budget
-from hnr_planner.core.planning.planner import Planner, Work
+from hnr_planner.core.planning.planner import Planner
 from hnr_planner.core.planning.request import (
     check_effort,
     check_request,
@@ -202,7 +201,7 @@ def _result_of_search(
     """
     optimizing = effort.optimizing(budget, began) if effort.optimizes else None
     best = attempt(request, 0, budget, began, optimizing)
-    first, work = best.first, Work.of(best.search)
+    first, work = best.first, best.work
     if first is not None and optimizing is not None:
         rounds, patience = effort.optimize_rounds, effort.optimize_patience
         best, work = optimize(request, best, rounds, patience, optimizing, began)
@@ -243,7 +242,8 @@ def _result_without_search(
         first = FirstSolution(working_time() - began, path_length(path), path)
         path = with_clearance(request, path, budget)
         length = path_length(path)
-    bound = straight_length(request) if status is PlannerStatus.SOLVED else math.inf
+    open_ended = (PlannerStatus.SOLVED, PlannerStatus.TIMEOUT, PlannerStatus.CANCELLED)
+    bound = request.straight_length if status in open_ended else math.inf
     return PlanResult(
         status=status,
         message=message,
@@ -279,7 +279,7 @@ def _proof(request: Request, best: Attempt) -> str:
 
     It is empty where the bound is no better than the straight distance.
     """
-    if best.lower_bound <= straight_length(request):
+    if best.lower_bound <= request.straight_length:
         return ''
     ratio = path_length(best.path) / best.lower_bound
     if ratio <= PROVED:

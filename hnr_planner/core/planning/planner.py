@@ -62,12 +62,13 @@ def make_problem(space: Space, start: Floats, goal: Floats, goal_radius: float) 
     ``start`` and ``goal`` (dim,) and ``goal_radius`` are in the caller's frame [m].
     """
     lower, upper = space.kernel_bounds
+    start, goal = space.to_kernel(np.array((start, goal)))
     return Problem(
         space=space.data,
         lower=lower,
         upper=upper,
-        start=space.to_kernel(start),
-        goal=space.to_kernel(goal),
+        start=start,
+        goal=goal,
         goal_radius=goal_radius / space.scale,
         margin=space.margin,
         typical_clearance=space.typical_clearance,

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import fields
+from functools import cache
 from importlib import import_module
 from typing import Any, NamedTuple
 
@@ -39,8 +40,13 @@ class PlannerEntry(NamedTuple):
 
     def load(self) -> type[Any]:
         """Import and return the planner's class, a dataclass whose fields are its settings."""
-        kind: type[Any] = getattr(import_module(self.module), self.class_name)
-        return kind
+        return _load(self.module, self.class_name)
+
+
+@cache
+def _load(module: str, class_name: str) -> type[Any]:
+    kind: type[Any] = getattr(import_module(module), class_name)
+    return kind
 
 
 #: The planners of ``plan``.
@@ -75,6 +81,12 @@ PLANNERS = (
         'RRTConnect',
         'RRT-Connect: RRTs from both ends, each extended towards the new vertices of the other',
     ),
+    PlannerEntry(
+        'polyanya',
+        f'{_PLANNERS}.polyanya',
+        'Polyanya',
+        'on a grid only: the shortest path, exactly, by a search over cones of visible points',
+    ),
 )
 
 #: Names that ``plan`` takes.
@@ -108,13 +120,20 @@ def make_planner(
         if settings:
             raise RequestError(f'settings {sorted(settings)} go with the name of a planner only')
         return algorithm
-    by_name = {entry.name: entry for entry in entries}
-    if algorithm not in by_name:
-        raise RequestError(f'algorithm must be one of {", ".join(by_name)}, got {algorithm!r}')
-    kind = by_name[algorithm].load()
+    entry = next((entry for entry in entries if entry.name == algorithm), None)
+    if entry is None:
+        names = ', '.join(entry.name for entry in entries)
+        raise RequestError(f'algorithm must be one of {names}, got {algorithm!r}')
+    kind = entry.load()
+    if settings:
+        _check_settings(kind, settings)
+    return kind(**settings)
+
+
+def _check_settings(kind: type[Any], settings: dict[str, Any]) -> None:
+    """Raise RequestError where a planner's class has no field of a setting's name."""
     known = [field.name for field in fields(kind)]
     for setting in settings:
         if setting not in known:
             has = ', '.join(known) or 'no settings'
             raise RequestError(f'{kind.name} has no setting {setting!r}; it has {has}')
-    return kind(**settings)

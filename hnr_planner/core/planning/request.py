@@ -19,6 +19,7 @@ from hnr_planner.core.planning.planner import (
 )
 from hnr_planner.core.planning.registry import make_planner
 from hnr_planner.core.planning.result import PlannerStatus
+from hnr_planner.core.spaces.lines import check_straight_lines
 from hnr_planner.core.spaces.primitives import component
 from hnr_planner.core.spaces.space import Space
 from numpy.typing import ArrayLike
@@ -157,6 +158,12 @@ class Request:
     seed: int
     problem: Problem
 
+    @property
+    def straight_length(self) -> float:
+        """Straight distance [m] from the start to the goal region: no path is shorter."""
+        distance = math.dist(self.start.tolist(), self.goal.tolist())
+        return max(distance - self.goal_radius, 0.0)
+
     def stream(self, *purpose: int) -> Stream:
         """Return the random stream that follows from the seed and the numbers of a purpose."""
         return stream(self.seed, *purpose)
@@ -195,6 +202,7 @@ def check_request(
 
     Whether start and goal are free is not checked here: see ``outcome_without_search``.
     """
+    check_straight_lines(space, 'plan')
     start, goal = check_point('start', start, space.dim), check_point('goal', goal, space.dim)
     goal_radius = check_number('goal_radius', goal_radius, 0.0)
     planner = for_space(make_planner(algorithm, settings or {}), space)

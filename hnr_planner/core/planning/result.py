@@ -66,7 +66,7 @@ class SearchResult:
         Row of ``samples`` from which each sample was reached; -1 for the root of a tree.
     iterations : int
         Number of transitions handled by all searches together: proposals inside the space,
-        accepted or not.
+        accepted or not, and cones expanded in the search for the shortest path.
     counts : dict
         Further counts of the planner by name, of all searches together.
     elapsed : float
@@ -117,9 +117,10 @@ class PlanResult(SearchResult):
         Distance from the requested goal to the end of the path [m] where the goal was moved
         within ``goal_tolerance``; else 0.
     lower_bound : float
-        Lower bound on the length of all free paths from start to goal [m]. It equals the length
-        of the path, up to margins at corners, where that is proved to be the shortest; it is inf
-        where no path exists.
+        Lower bound on the length of all free paths from start to goal or to the goal region [m].
+        It equals the length of the path, up to margins at corners, where that is proved to be the
+        shortest; it is inf where no path exists. Where an end was moved, it is a bound on paths
+        with the ends as moved, the segment from the start to free space included.
     escape : float
         Length of the first segment of the path [m] where it leads from a start that is not free
         to free space (``start_escape``); else 0.

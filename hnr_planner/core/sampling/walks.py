@@ -26,7 +26,7 @@ from hnr_planner.core.errors import RequestError
 from hnr_planner.core.kernels.dispatch import dispatched
 from hnr_planner.core.kernels.kernel import inlined, kernel
 from hnr_planner.core.kernels.streams import uniform
-from hnr_planner.core.sampling.draws import draw_direction, draw_in_ball, REDRAWS_MAX
+from hnr_planner.core.sampling.draws import draw_in_ball, REDRAWS_MAX
 from hnr_planner.core.spaces.chain_cache import (
     chord_cached,
     move_along,
@@ -34,6 +34,7 @@ from hnr_planner.core.spaces.chain_cache import (
     NO_AXIS,
     refresh,
 )
+from hnr_planner.core.spaces.lines import check_straight_lines, draw_direction
 from hnr_planner.core.spaces.primitives import first_exit
 from hnr_planner.core.spaces.space import Space
 
@@ -78,6 +79,7 @@ class CoordinateHitAndRunWalk:
 
     def compiled(self, space: Space) -> Any:
         """Return the settings for the kernel, lengths in the kernel frame."""
+        check_straight_lines(space, f'the walk {self.name}')
         return CoordinateHitAndRunStep(space.zero_length)
 
 
@@ -117,6 +119,7 @@ class BallWalk:
 
     def compiled(self, space: Space) -> Any:
         """Return the settings for the kernel, lengths in the kernel frame."""
+        check_straight_lines(space, f'the walk {self.name}')
         if self.radius is None:
             radius = space.typical_clearance * (space.dim + 1) / math.sqrt(space.dim)
         else:
@@ -198,7 +201,7 @@ def take_step(walk: Any, space: Any, cache: Any, u: Any, rng: Any, counts: Any) 
 @inlined
 def _hit_and_run(walk, space, cache, u, rng, counts):
     """Move to a uniform point of the chord in a uniform direction; return whether it moved."""
-    draw_direction(rng, u)
+    draw_direction(space, rng, u)
     return _move_on_chord(walk.zero_length, space, cache, u, NO_AXIS, rng, counts)
 
 

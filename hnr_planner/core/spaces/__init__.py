@@ -8,6 +8,7 @@ from hnr_planner.core.spaces.grid.grid_space import GridSpace
 from hnr_planner.core.spaces.oracle import OracleSpace
 from hnr_planner.core.spaces.polygon.polygon_space import PolygonSpace
 from hnr_planner.core.spaces.polytope.polytope_space import PolytopeSpace
+from hnr_planner.core.spaces.poses.pose_space import PoseSpace
 from hnr_planner.core.spaces.product import ProductSpace
 from hnr_planner.core.spaces.sheared import ShearedSpace
 from hnr_planner.core.spaces.space import Chord, Space
@@ -23,6 +24,7 @@ __all__ = [
     'OracleSpace',
     'PolygonSpace',
     'PolytopeSpace',
+    'PoseSpace',
     'ProductSpace',
     'ShearedSpace',
     'Space',

@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 from hnr_planner.core.checks import Floats
 from hnr_planner.core.kernels.dispatch import dispatched
 from hnr_planner.core.kernels.kernel import inlined, kernel
+from hnr_planner.core.spaces.lines import point_on_line
 from hnr_planner.core.spaces.primitives import chord, CompiledSpace, contains
 
 #: Steps of a chain after which its cache is recomputed, so that rounding does not accumulate. They
@@ -82,12 +83,11 @@ def chord_cached(space: CompiledSpace, cache: Any, u: Floats, axis: int) -> tupl
 @inlined
 def move_along(space: CompiledSpace, cache: Any, u: Floats, axis: int, s: float) -> bool:
     """
-    Move the chain to ``x + s u`` on the line of its last chord; return whether it moved.
+    Move the chain to the point at ``s`` of its last chord's line; return whether it moved.
 
-    The chain stays where it is if ``x + s u`` rounds to a point that is not free.
+    The chain stays where it is if that rounds to a point that is not free.
     """
-    for i in range(len(u)):
-        cache.y[i] = cache.x[i] + s * u[i]
+    point_on_line(space, cache.x, u, s, cache.y)
     return move_if_free(space, cache)
 
 

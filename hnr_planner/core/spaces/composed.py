@@ -9,13 +9,19 @@ from hnr_planner.core.spaces.space import Space
 
 
 def check_members(members: Iterable[Any]) -> tuple[Space, ...]:
-    """Return the members as a tuple; raise SpaceError unless there is one and all are spaces."""
+    """
+    Return the members as a tuple, or raise SpaceError.
+
+    There has to be one, and all have to be spaces with straight lines.
+    """
     spaces = tuple(members)
     if not spaces:
         raise SpaceError('there must be at least one member, got none')
     for member in spaces:
         if not isinstance(member, Space):
             raise SpaceError(f'a member must be a space, got {member!r}')
+        if not member.has_straight_lines:
+            raise SpaceError(f'a member must have straight lines, got {member!r}')
     return spaces
 
 

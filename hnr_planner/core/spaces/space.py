@@ -13,7 +13,7 @@ every space:
 from abc import ABC, abstractmethod
 from functools import cached_property
 import threading
-from typing import Any, NamedTuple
+from typing import Any, ClassVar, NamedTuple
 
 from hnr_planner.core.checks import check_direction, check_point, check_points, Floats
 from hnr_planner.core.errors import SpaceError
@@ -77,6 +77,9 @@ class Space(ABC):
     """
 
     dim: int
+
+    #: Whether the line through ``x`` along ``u`` is ``x + s u``; false for orbits of twists.
+    has_straight_lines: ClassVar[bool] = True
 
     #: Point (dim,) of the caller's frame that is the origin of the kernel frame; None for 0.
     _kernel_origin: Floats | None = None

@@ -12,7 +12,7 @@ import math
 from hnr_planner.core.kernels.kernel import kernel
 from hnr_planner.core.kernels.streams import uniform
 from hnr_planner.core.lengths import norm
-from hnr_planner.core.sampling.draws import draw_direction
+from hnr_planner.core.spaces.lines import uniform_direction
 from hnr_planner.core.systems.primitives import brake, contact, move
 from hnr_planner.core.trajectories.problem import SHORTEST_STEP
 from hnr_planner.core.trajectories.steps import can_brake
@@ -76,7 +76,7 @@ def _curve_step(problem, rng, steps, row, n_rows):
     system = problem.system
     state, control, end = steps.states[row], steps.controls[n_rows], steps.states[n_rows]
     dim = len(control)
-    draw_direction(rng, control)
+    uniform_direction(rng, control)
     speed, along = norm(state[dim:]), 0.0
     for i in range(dim):
         control[i] *= system.max_acceleration

@@ -54,7 +54,7 @@ class Health:
             ready, state, values = False, f'{refusal.outcome.name}: {refusal.why}', {}
         name = f'{self._node.get_fully_qualified_name()}: planner'
         stamp = self._node.get_clock().now().to_msg()
-        values |= self._request_values() | _compilation_values()
+        values |= self._request_values() | self._roadmap_values() | _compilation_values()
         self._publisher.publish(health_message(ready, name, state, values, stamp))
 
     def _map_values(self) -> dict[str, str]:
@@ -71,6 +71,16 @@ class Health:
             'time_median': f'{summary.median:.6f}',
             'time_p95': f'{summary.p95:.6f}',
         } | {outcome.name: str(count) for outcome, count in summary.outcomes.items()}
+
+    def _roadmap_values(self) -> dict[str, str]:
+        """Return the state, the times [s] and the memory [bytes] of the roadmap."""
+        roadmap = self._server.roadmaps.state
+        return {
+            'roadmap': roadmap.state,
+            'roadmap_build_time': f'{roadmap.build_time:.3f}',
+            'roadmap_update_time': f'{roadmap.update_time:.3f}',
+            'roadmap_memory': str(roadmap.n_bytes),
+        }
 
 
 def _compilation_values() -> dict[str, str]:

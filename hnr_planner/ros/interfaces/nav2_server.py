@@ -12,7 +12,8 @@ from typing import Any
 from builtin_interfaces.msg import Duration
 from geometry_msgs.msg import PoseStamped
 from hnr_planner.ros.interfaces.request_server import RequestServer
-from hnr_planner.ros.messages.paths import path_message, points_from_path, pose_from_message
+from hnr_planner.ros.messages.action_results import PathResults
+from hnr_planner.ros.messages.paths import points_from_path, pose_from_message
 from hnr_planner.server.nav2 import error_name, goal_request, robot_pose
 from hnr_planner.server.outcomes import Refusal
 from hnr_planner.server.path_validity import judge_path
@@ -120,10 +121,11 @@ class _Goal:
     A goal that is being planned for.
 
     Its search ends when ``cancel`` is set: by its client (then ``cancelled`` is true), or by a
-    newer goal (then ``preempted`` is).
+    newer goal (then ``preempted`` is). It arrived at ``arrived``, by ``time.monotonic`` [s].
     """
 
     def __init__(self) -> None:
+        self.arrived = time.monotonic()
         self.cancel = threading.Event()
         self.cancelled = False
         self.preempted = False
@@ -159,16 +161,19 @@ class _Action:
         server: RequestServer,
         settings: Callable[[], Settings],
     ) -> None:
-        self._kind = kind
         self._name = name
         self._poses_of = poses_of
         self._server = server
         self._settings = settings
+        self._results = PathResults(kind)
+        if self._results.why_slow:
+            why = self._results.why_slow
+            node.get_logger().warning(f'results of {name} are built pose by pose: {why}')
         self._goals: dict[bytes, _Goal] = {}
         self._one_at_a_time = threading.Lock()
         ActionServer(
             node,
-            kind,
+            self._results.kind,
             name,
             self._execute,
             handle_accepted_callback=self._begin,
@@ -199,11 +204,11 @@ class _Action:
     def _execute(self, handle: ServerGoalHandle) -> Any:
         """Plan for a goal, mark it as cancelled, succeeded or aborted, and return its result."""
         goal = self._goals[_key(handle)]
-        handle.publish_feedback(self._kind.Feedback())
-        response, header = self._server.plan(
-            self._name, self._request(handle.request), goal.cancel
+        handle.publish_feedback(self._results.kind.Feedback())
+        publication = self._server.plan(
+            self._name, self._request(handle.request), goal.cancel, goal.arrived
         )
-        self._server.response_sent()  # the result leaves when this returns
+        response = publication.response
         with self._one_at_a_time:
             del self._goals[_key(handle)]
         if goal.cancelled:
@@ -214,7 +219,9 @@ class _Action:
             handle.succeed()
         else:
             handle.abort()
-        return self._result(response, header, goal.preempted)
+        result = self._result(response, publication.header, goal)
+        self._server.response_sent()  # the result leaves when this returns
+        return result
 
     def _request(self, goal: Any) -> PlanRequest:
         """Return the request for a path that a goal message stands for."""
@@ -222,19 +229,20 @@ class _Action:
         poses = [pose_from_message(pose) for pose in self._poses_of(goal)]
         return goal_request(start, poses, goal.planner_id, self._settings())
 
-    def _result(self, response: PlanResponse, header: Header, preempted: bool) -> Any:
+    def _result(self, response: PlanResponse, header: Header, goal: _Goal) -> Any:
         """
         Return the result message: path, time, error code, and for a failure the reason.
 
-        The reason is a newer goal where ``preempted`` is true.
+        The reason is a newer goal where ``goal`` was preempted.
         """
-        path = path_message(response.poses, header)
-        result = self._kind.Result(path=path, planning_time=_duration(response.elapsed))
-        result.error_code = getattr(result, error_name(response))
+        fields = {
+            'error_code': getattr(self._results.kind.Result, error_name(response)),
+            'planning_time': _duration(time.monotonic() - goal.arrived),
+        }
         if not response.solved:
-            why = 'a newer goal took its place' if preempted else response.why
-            result.error_msg = f'{response.outcome.name}: {why}'
-        return result
+            why = 'a newer goal took its place' if goal.preempted else response.why
+            fields['error_msg'] = f'{response.outcome.name}: {why}'
+        return self._results.make(response.poses, header, **fields)
 
 
 def _key(handle: ServerGoalHandle) -> bytes:

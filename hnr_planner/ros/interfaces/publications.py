@@ -1,8 +1,9 @@
 """Publications: the messages about each request besides its outcome, and its log line."""
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 from hnr_planner.ros.messages.markers import serialised_markers
@@ -20,10 +21,14 @@ from visualization_msgs.msg import MarkerArray
 #: Names below the node's of the topics of publications, besides the outcome, and their types.
 TOPICS = {
     'path': Path,
+    'paths': Path,
     'trajectory': MultiDOFJointTrajectory,
     'samples': PointCloud2,
     'markers': MarkerArray,
 }
+
+#: Functions that make a message for a topic of ``TOPICS``, by the topic.
+Pictures = dict[str, Callable[[], Any]]
 
 #: Pairs of a topic of ``TOPICS`` and a message for it, as an object or serialised.
 Messages = Iterator[tuple[str, Any]]
@@ -56,9 +61,9 @@ class Publication(ABC):
     def messages(self) -> Messages:
         """Yield the messages with what was requested, which are always published."""
 
-    def pictures(self) -> Messages:
-        """Yield messages for people to look at, which are left out in a backlog or at the end."""
-        yield from ()
+    def pictures(self) -> Pictures:
+        """Return messages for people to look at, by their topics, as functions that make them."""
+        return {}
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,15 +81,28 @@ class PlanPublication(Publication):
     response: PlanResponse
     samples_max: int
 
+    @cached_property
+    def path(self) -> bytes:
+        """The path as a serialised message; to be taken once the header has its stamp."""
+        return serialised_path(self.response.poses, self.header)
+
     def messages(self) -> Messages:
-        """Yield path and trajectory; each is empty where there is none."""
-        yield 'path', serialised_path(self.response.poses, self.header)
+        """Yield path, alternatives and trajectory; each is empty where there is none."""
+        yield 'path', self.path
+        for poses in self.response.poses_of_all:
+            yield 'paths', serialised_path(poses, self.header)
+        if not self.response.solved:
+            yield 'paths', self.path
         yield 'trajectory', serialised_trajectory(self.response.trajectory, self.header)
 
-    def pictures(self) -> Messages:
-        """Yield the samples of the search, and the markers that show it in RViz."""
-        yield 'samples', samples_message(self.response.result, self.samples_max, self.header)
-        yield 'markers', serialised_markers(self.response, self.header)
+    def pictures(self) -> Pictures:
+        """Return the samples of the search, and the markers that show it in RViz."""
+        return {
+            'samples': lambda: samples_message(
+                self.response.result, self.samples_max, self.header
+            ),
+            'markers': lambda: serialised_markers(self.response, self.header),
+        }
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,24 +1,30 @@
 """The publisher, whose own thread logs and publishes how each request ended."""
 
 from collections import deque
-from itertools import chain
+from collections.abc import Callable
+import enum
+import math
 import queue
 import threading
+import time
 
 from builtin_interfaces.msg import Time as TimeMessage
 from diagnostic_msgs.msg import DiagnosticArray
+from hnr_planner.ros.interfaces.pictures import PicturePublisher
 from hnr_planner.ros.interfaces.publications import Publication, TOPICS
 from hnr_planner.ros.messages.outcomes import outcome_message
 from hnr_planner.server.request_log import LogEntry
-from hnr_planner.server.responses import PlanResponse
+from hnr_planner.server.responses import PlanResponse, Response
+from hnr_planner.server.settings import MOST_ALTERNATIVES
 from rclpy.clock import Clock
 from rclpy.duration import Duration
+from rclpy.event_handler import PublisherEventCallbacks
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.time import Time
 
-#: Number of the latest outcomes that late subscribers get.
-OUTCOMES_KEPT = 100
+#: Number of the latest outcomes, and of paths of the latest request, that late subscribers get.
+OUTCOMES_KEPT, PATHS_KEPT = 100, MOST_ALTERNATIVES
 
 #: Longest wait, for each topic, until subscribers have its last message when the node ends.
 LONGEST_DELIVERY = Duration(seconds=0.2)
@@ -26,6 +32,9 @@ LONGEST_DELIVERY = Duration(seconds=0.2)
 #: Longest time [s] that a publication waits for its response to be sent; the publications after
 #: it wait for it too.
 LONGEST_HOLD = 0.1
+
+#: Topics with pictures for people, of those of publications.
+PICTURES = ('samples', 'markers')
 
 #: With more publications waiting, samples and markers (pictures for people) are left out.
 LONGEST_BACKLOG = 20
@@ -53,16 +62,22 @@ class Publisher:
         self._name = node.get_fully_qualified_name()
         self._logger = node.get_logger()
         self._stamps = _Stamps(node.get_clock())
+        self._wake: queue.SimpleQueue[_Wake] = queue.SimpleQueue()
         self._outcome = node.create_publisher(DiagnosticArray, '~/outcome', latched(OUTCOMES_KEPT))
         self._publishers = {
-            topic: node.create_publisher(kind, f'~/{topic}', latched(1))
+            topic: node.create_publisher(
+                kind,
+                f'~/{topic}',
+                latched(PATHS_KEPT if topic == 'paths' else 1),
+                event_callbacks=self._on_match(topic),
+            )
             for topic, kind in TOPICS.items()
         }
-        self._pictures = True
+        self._pictures = PicturePublisher({name: self._publishers[name] for name in PICTURES})
+        self._showing = True
         self._in_order = threading.Lock()
         self._responding = _Responding()
-        self._waiting: deque[tuple[Publication, threading.Event]] = deque()
-        self._wake: queue.SimpleQueue[bool] = queue.SimpleQueue()
+        self._waiting: deque[tuple[Publication, _Sending]] = deque()
         self._thread = threading.Thread(target=self._publish_all, name='publish', daemon=True)
         self._thread.start()
 
@@ -72,17 +87,17 @@ class Publisher:
 
         It is logged and published once this thread has called ``response_sent``.
         """
-        self._responding.sent = sent = threading.Event()
+        self._responding.now = sending = _Sending()
         with self._in_order:
             publication.header.stamp = self._stamps.later()
-            self._waiting.append((publication, sent))
+            self._waiting.append((publication, sending))
 
     def response_sent(self) -> None:
         """Release the publication that this thread handed over last; do nothing without one."""
-        if self._responding.sent is not None:
-            self._responding.sent.set()
-            self._responding.sent = None
-            self._wake.put(True)
+        if self._responding.now is not None:
+            self._responding.now.end()
+            self._responding.now = None
+            self._wake.put(_Wake.RESPONSE)
 
     def announce(self, response: PlanResponse, caller: str) -> None:
         """Publish an outcome that belongs to no request, at once, under the name ``caller``."""
@@ -92,29 +107,41 @@ class Publisher:
 
     def leave_out_pictures(self) -> None:
         """Publish no more pictures (samples and markers), so that the node can end soon."""
-        self._pictures = False
+        self._showing = False
 
     def close(self) -> None:
         """Publish what still waits, end the thread, and wait a short time for subscribers."""
-        self._wake.put(False)
+        self._wake.put(_Wake.END)
         self._thread.join()
         for publisher in (self._outcome, *self._publishers.values()):
             publisher.wait_for_all_acked(LONGEST_DELIVERY)
 
     def _publish_all(self) -> None:
-        while self._wake.get():
-            self._publish_next()
+        while (reason := self._wake.get()) is not _Wake.END:
+            self._safely(
+                self._publish_next if reason is _Wake.RESPONSE else self._pictures.catch_up
+            )
         while self._waiting:
-            self._publish_next()
+            self._safely(self._publish_next)
+
+    def _safely(self, work: Callable[[], None]) -> None:
+        """Do ``work``, and log a failure, which must not stop what follows."""
+        try:
+            work()
+        except Exception as error:
+            self._logger.error(f'a publication failed: {error!r}')
 
     def _publish_next(self) -> None:
-        publication, sent = self._waiting.popleft()
-        sent.wait(LONGEST_HOLD)
-        try:
-            self._log(publication.log)
-            self._publish(publication)
-        except Exception as error:  # must not stop those that follow
-            self._logger.error(f'a publication failed: {error!r}')
+        publication, sending = self._waiting.popleft()
+        response = publication.response.sent_after(sending.wait(LONGEST_HOLD))
+        self._log(publication.log)
+        self._publish(publication, response)
+
+    def _on_match(self, topic: str) -> PublisherEventCallbacks | None:
+        """Return what makes the picture of a topic once a subscriber is there."""
+        if topic not in PICTURES:
+            return None
+        return PublisherEventCallbacks(matched=lambda _: self._wake.put(_Wake.SUBSCRIBER))
 
     def _log(self, entry: LogEntry) -> None:
         # A line of source for each level: rclpy refuses to log at two levels from one.
@@ -125,21 +152,54 @@ class Publisher:
         else:
             self._logger.debug(entry.text)
 
-    def _publish(self, publication: Publication) -> None:
+    def _publish(self, publication: Publication, response: Response) -> None:
+        """Publish all about a request; ``response`` is how it ended, sending included."""
         header, name = publication.header, f'{self._name}/{publication.caller}'
-        self._outcome.publish(outcome_message(publication.response, name, header.stamp))
-        messages = publication.messages()
-        if self._pictures and len(self._waiting) <= LONGEST_BACKLOG:
-            messages = chain(messages, publication.pictures())
-        for topic, message in messages:
+        self._outcome.publish(outcome_message(response, name, header.stamp))
+        for topic, message in publication.messages():
+            self._pictures.forget(topic)
             self._publishers[topic].publish(message)
+        if self._showing and len(self._waiting) <= LONGEST_BACKLOG:
+            self._pictures.show(publication.pictures())
+
+
+class _Wake(enum.Enum):
+    """
+    Why the publishing thread is woken.
+
+    RESPONSE: a response was sent. SUBSCRIBER: a picture may have one more. END: the node ends.
+    """
+
+    RESPONSE = enum.auto()
+    SUBSCRIBER = enum.auto()
+    END = enum.auto()
+
+
+class _Sending:
+    """The sending of a response, from construction to ``end``."""
+
+    def __init__(self) -> None:
+        self._began = time.monotonic()
+        self._sent = threading.Event()
+        self._ended = math.nan
+
+    def end(self) -> None:
+        """Mark the response as sent."""
+        self._ended = time.monotonic()
+        self._sent.set()
+
+    def wait(self, patience: float) -> float:
+        """Wait ``patience`` [s] at most for the end; return the time [s] that the sending took."""
+        if self._sent.wait(patience):
+            return self._ended - self._began
+        return time.monotonic() - self._began
 
 
 class _Responding(threading.local):
-    """For each thread, the event to set when the response to its last request has been sent."""
+    """For each thread, the sending of the response to its last request."""
 
     def __init__(self) -> None:
-        self.sent: threading.Event | None = None
+        self.now: _Sending | None = None
 
 
 class _Stamps:

@@ -22,13 +22,6 @@ from std_msgs.msg import Bool, Header
 PATH_VALID = 'path_valid'
 
 
-class Planned(NamedTuple):
-    """A response to a request for a path, and the stamped header of all messages about it."""
-
-    response: PlanResponse
-    header: Header
-
-
 class Sampled(NamedTuple):
     """A response to a request for draws, and the stamp of all messages about it."""
 
@@ -70,14 +63,19 @@ class RequestServer:
         self.path_monitor = PathMonitor(newest_map, self._report_path)
         self.searches = self._server.searches
         self.statistics = self._server.statistics
+        self.roadmaps = self._server.roadmaps
 
     def plan(
-        self, caller: str, request: PlanRequest, cancel: threading.Event | None = None
-    ) -> Planned:
+        self,
+        caller: str,
+        request: PlanRequest,
+        cancel: threading.Event | None = None,
+        arrived: float | None = None,
+    ) -> PlanPublication:
         """
-        Plan for ``request``, and return the response and the header of its messages.
+        Plan for ``request``, and return the publication of its response, with its stamp.
 
-        They are published once this thread has called ``response_sent``.
+        It is published once this thread has called ``response_sent``.
 
         Parameters
         ----------
@@ -87,21 +85,22 @@ class RequestServer:
             The request as it arrived, not checked yet.
         cancel : threading.Event, optional
             Ends the search when it is set.
+        arrived : float, optional
+            When the request arrived, by ``time.monotonic`` [s]; now when left out.
 
         """
         settings = self._settings()
-        response = self._server.plan(request, cancel)
+        response = self._server.plan(request, cancel, arrived)
         header = Header(frame_id=response.frame)
         remark = ''
         if request.omits_start:
             remark = 'the start is (0, 0) in no frame, as if left out: taken literally'
         log = self._log.entry(caller, response, settings.time_limit, remark)
         with self._in_order:
-            self._publisher.hand_over(
-                PlanPublication(caller, response, header, log, settings.samples_max)
-            )
+            publication = PlanPublication(caller, response, header, log, settings.samples_max)
+            self._publisher.hand_over(publication)
             self.path_monitor.follow(response)
-        return Planned(response, header)
+        return publication
 
     def sample(self, caller: str) -> Sampled:
         """
@@ -120,6 +119,16 @@ class RequestServer:
         log = self._log.entry(caller, response, self._settings().time_limit)
         self._publisher.hand_over(SamplePublication(caller, response, header, log))
         return Sampled(response, header.stamp)
+
+    def follow_map(self) -> None:
+        """Check the last path on the newest map, and keep its roadmap, where one is wanted."""
+        self.path_monitor.check()
+        self._server.follow_map()
+
+    def forget_map(self) -> None:
+        """Forget the last path and the roadmap."""
+        self.path_monitor.forget()
+        self.roadmaps.forget()
 
     def response_sent(self) -> None:
         """Release the messages about the response that this thread got last from this server."""

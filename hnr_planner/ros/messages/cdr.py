@@ -49,33 +49,38 @@ def with_points(serialised: bytes, arrays: Sequence[NDArray[np.float64]]) -> byt
     return b''.join([*pieces, serialised[done:]])
 
 
-def with_elements(short: Sequence[bytes], fields: Sequence[tuple[int, NDArray[Any]]]) -> bytes:
+def with_elements(
+    short: Sequence[bytes], fields: Sequence[tuple[int, NDArray[Any]]], n_after: int = 0
+) -> bytes:
     """
-    Return a serialised message that ends with a sequence of n elements, given shorter forms.
+    Return a serialised message with a sequence of n elements, given shorter forms.
 
     Parameters
     ----------
     short : three of bytes
-        The serialised message with the first 0, 1 and 2 elements of the sequence, which is the
-        last field. Each element from the second one on has the same size, a multiple of eight
-        bytes.
+        The serialised message with the first 0, 1 and 2 elements of the sequence. Each element
+        from the second one on has the same size, a multiple of eight bytes.
     fields : sequence of (int, (n, k))
         The parts of an element that differ between the n elements: the number of bytes from the
         beginning of the part to the end of the element, and k numbers for each element, in the
         number type of the message. All else is as in the second element.
+    n_after : int
+        Number of bytes after the sequence, the same in each form: no number there has more than
+        four bytes.
 
     """
     count = len(fields[0][1])
     if count < len(short):
         return short[count]
-    none, one, two = short
-    n_none, n_one = len(none), len(one)
+    none, one, two = (form[: len(form) - n_after] for form in short)
+    n_none, n_one, n_two = len(none), len(one), len(two)
+    after = short[2][n_two:]
     others = np.tile(np.frombuffer(two[n_one:], dtype=np.uint8), (count - 1, 1))
     for before_end, numbers in fields:
         data = np.ascontiguousarray(numbers[1:]).view(np.uint8)
         begin = others.shape[1] - before_end
         end = begin + data.shape[1]
         others[:, begin:end] = data
-    # The message with 0 elements ends with the length of the sequence, in four bytes.
+    # Without elements, the sequence is its length, in four bytes.
     length = np.uint32(count).tobytes()
-    return b''.join([none[:-4], length, one[n_none:], others.tobytes()])
+    return b''.join([none[:-4], length, one[n_none:], others.tobytes(), after])

@@ -11,6 +11,9 @@ from numpy.typing import NDArray
 from rclpy.serialization import serialize_message
 from std_msgs.msg import Header
 
+#: Number of bytes at the end of a serialised pose that are its seven numbers.
+POSE_BYTES = 56
+
 
 def request_from_message(message: GetPlan.Request, algorithm: str) -> PlanRequest:
     """Return the request in ``message``, to be planned with ``algorithm``, without checking it."""
@@ -56,8 +59,7 @@ def path_message(rows: NDArray[np.float64], header: Header) -> Path:
 def serialised_path(rows: NDArray[np.float64], header: Header) -> bytes:
     """Return the serialised form of ``path_message(rows, header)``, without objects for poses."""
     short = [serialize_message(path_message(rows[:n_poses], header)) for n_poses in range(3)]
-    # The last 56 bytes of a pose are its seven numbers.
-    return with_elements(short, [(56, rows)])
+    return with_elements(short, [(POSE_BYTES, rows)])
 
 
 def _stamped(row: list[float], header: Header) -> PoseStamped:

@@ -9,7 +9,7 @@ from hnr_planner.ros.interfaces.request_server import RequestServer
 from hnr_planner.ros.interfaces.rviz_tools import RvizTools
 from hnr_planner.ros.map.map_input import MapInput
 from hnr_planner.ros.messages.paths import request_from_message
-from hnr_planner.ros.messages.serialised_response import PlanResponses
+from hnr_planner.ros.messages.plan_responses import PlanResponses
 from hnr_planner.ros.node.bond import NodeBond
 from hnr_planner.ros.node.callback_group import BoundedCallbackGroup
 from hnr_planner.ros.node.managed_node import ManagedNode
@@ -106,7 +106,7 @@ class PlannerNode(ManagedNode):
     def configure(self) -> None:
         """Begin to subscribe to maps and transforms."""
         self._transforms = Transforms(self)
-        self._map_input = MapInput(self, lambda: self.settings, self._server.path_monitor.check)
+        self._map_input = MapInput(self, lambda: self.settings, self._server.follow_map)
         self.get_logger().info(f'maps come from {self._map_input.topic}')
 
     def activate(self) -> None:
@@ -128,7 +128,7 @@ class PlannerNode(ManagedNode):
             if source is not None:
                 source.close()
         self._map_input, self._transforms = None, None
-        self._server.path_monitor.forget()
+        self._server.forget_map()
 
     def end_searches(self) -> None:
         """End running searches, and admit no more, before the process ends."""
@@ -159,10 +159,11 @@ class PlannerNode(ManagedNode):
         return transforms.transform(pose, frame, patience)
 
     def _use_settings(self, settings: Settings) -> None:
-        """Put changed parameters into use: the click tools of RViz, and the space of the map."""
+        """Put changed parameters into use: click tools, the space of the map, the roadmap."""
         self._rviz_tools.listen(settings.rviz_clicks)
         if self._map_input is not None:
             self._map_input.use(settings)
+            self._server.follow_map()
 
     def _plan(
         self,
@@ -173,8 +174,9 @@ class PlannerNode(ManagedNode):
     ) -> GetPlan.Response:
         """Return the response to a request for a path; ``algorithm`` None is the parameter's."""
         request = request_from_message(message, algorithm or self.settings.algorithm)
-        planned = self._server.plan(service, request)
-        return self._responses.make(planned.response.poses, planned.header)
+        publication = self._server.plan(service, request)
+        poses, header = publication.response.poses, publication.header
+        return self._responses.make(poses, header, publication.path)
 
     def _sample(self, _request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
         """Draw points of the free space; return the outcome, and the stamp of their message."""

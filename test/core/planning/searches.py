@@ -6,7 +6,7 @@ from typing import Any
 from hnr_planner.core import GridSpace, PlanResult
 from hnr_planner.core import plan as plan_in_time
 from hnr_planner.core.kernels.streams import stream
-from hnr_planner.core.planning.planner import make_problem
+from hnr_planner.core.planning.planner import for_space, make_problem
 from hnr_planner.core.planning.registry import make_planner
 import numpy as np
 from numpy.typing import NDArray
@@ -23,7 +23,7 @@ def start_search(
     space = GridSpace.from_blocked(blocked)
     lower, upper = space.bounds
     problem = make_problem(space, lower + 0.5, upper - 0.5, goal_radius)
-    return make_planner(algorithm, settings).start(problem, stream(seed))
+    return for_space(make_planner(algorithm, settings), space).start(problem, stream(seed))
 
 
 def plan(*request: Any, **given: Any) -> PlanResult:

@@ -50,7 +50,8 @@ def test_the_same_seed_gives_the_same_result_to_the_last_bit(algorithm: str):
     assert first.iterations == second.iterations
     assert not first.cut_by_time
     other = plan(SPACE, START, GOAL, algorithm=algorithm, seed=10)
-    assert other.path.shape != first.path.shape or (other.path != first.path).any()
+    if algorithm != 'polyanya':  # which draws nothing
+        assert other.path.shape != first.path.shape or (other.path != first.path).any()
 
 
 def test_a_fresh_seed_is_reported_and_gives_the_result_again():

@@ -29,7 +29,8 @@ from numpy.typing import NDArray
 import pytest
 import shapely
 
-NAMES = [name for name in ALGORITHMS if name != 'auto']
+#: Planners of every space; ``polyanya`` plans on grids.
+NAMES = [name for name in ALGORITHMS if name not in ('auto', 'polyanya')]
 #: Between two points of a path that are looked at, in parts of the space's diagonal.
 STEP = 1e-4
 
@@ -194,6 +195,8 @@ SCENES = {
     'slit': cache(slit),
     'tables': cache(tables),
 }
+#: Scenes whose searches take less time interpreted than their kernels take to compile.
+SMALL = ('lift', 'cells', 'slit', 'tables')
 EVERY_PLANNER = ('balls, 2-D', 'balls, 3-D', 'balls, 6-D', 'star')
 
 
@@ -213,7 +216,7 @@ def test_scenes_are_what_they_are_said_to_be(name: str):
 @pytest.mark.parametrize(
     ('name', 'algorithm'),
     [
-        (name, algorithm)
+        pytest.param(name, algorithm, marks=[pytest.mark.interpreted] * (name in SMALL))
         for name in SCENES
         for algorithm in (NAMES if name in EVERY_PLANNER else ['auto'])
     ],
@@ -240,7 +243,10 @@ def test_paths_are_free_and_end_where_they_should(name: str, algorithm: str):
     assert result.length >= np.linalg.norm(goal - start)
 
 
-@pytest.mark.parametrize('name', SCENES)
+@pytest.mark.parametrize(
+    'name',
+    [pytest.param(name, marks=[pytest.mark.interpreted] * (name in SMALL)) for name in SCENES],
+)
 def test_regions_are_reached_and_ends_that_are_not_free_refused(name: str):
     scene = SCENES[name]()
     space, start, goal, blocked = scene.space, scene.start, scene.goal, scene.blocked
@@ -285,6 +291,7 @@ def test_a_line_with_a_gap_is_searched_and_given_up(algorithm: str):
     assert (result.samples < 0.4).sum() + (result.samples > 0.6).sum() == len(result.samples)
 
 
+@pytest.mark.interpreted
 def test_components_are_distinguished_without_a_search():
     two = PolygonSpace(shapely.MultiPolygon([shapely.box(0, 0, 1, 1), shapely.box(1, 1, 2, 2)]))
     lifted = ProductSpace(two, BoxSpace([0.0], [1.0]))
@@ -296,6 +303,7 @@ def test_components_are_distinguished_without_a_search():
         assert plan(space, [0.2, 0.2, *rest], [0.8, 0.8, *rest], seed=0).path.shape[0] >= 2
 
 
+@pytest.mark.interpreted
 def test_further_paths_pass_holes_of_a_polygon_on_other_sides():
     hall = shapely.box(0, 0, 10, 6).difference(shapely.box(4, 2, 6, 4))
     space = PolygonSpace(hall)

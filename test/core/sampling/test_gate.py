@@ -4,6 +4,7 @@ from test.core.sampling.gate_sets import hall_and_dome, SETS, u_shape
 from test.sampling_gate import (
     ALPHA,
     ball_step,
+    N_ONE_STEP,
     one_step,
     same_ball_step,
     t1_uniform_on_the_square,
@@ -15,7 +16,6 @@ from test.sampling_gate import (
 import numpy as np
 import pytest
 
-N_ONE_STEP = 300_000
 N_STATIONARITY = 200_000
 N_REVERSIBILITY = 200_000
 BALL = 5.0

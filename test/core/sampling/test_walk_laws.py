@@ -9,6 +9,7 @@ from test.core.sampling.gate_sets import GateSet, SETS
 from test.sampling_gate import (
     ALPHA,
     ball_step,
+    N_ONE_STEP,
     one_step,
     same_ball_step,
     same_law,
@@ -23,7 +24,6 @@ import numpy as np
 import pytest
 from scipy import stats
 
-N_ONE_STEP = 1_000_000
 N_STATIONARITY = 100_000
 N_BALL = 200_000
 N_REVERSIBILITY = 200_000

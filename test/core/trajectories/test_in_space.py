@@ -7,6 +7,8 @@ from hnr_planner.core.systems import DoubleIntegrator
 import numpy as np
 import pytest
 
+pytestmark = pytest.mark.interpreted
+
 SYSTEM = DoubleIntegrator(dim=3, max_acceleration=1.0, max_speed=1.5)
 SPACE = DifferenceSpace(
     BoxSpace((0, 0, 0), (4, 4, 4)),

@@ -19,11 +19,13 @@ from hnr_planner.core.planning.planners.cones import (
     LEFT_X,
     LEFT_Y,
     N_NODES,
+    N_OPEN,
     N_VERTICES,
     NONE,
     pop,
     PORTAL,
     push,
+    reach_disc,
     RIGHT_X,
     RIGHT_Y,
     ROOT,
@@ -31,21 +33,23 @@ from hnr_planner.core.planning.planners.cones import (
     X,
     Y,
 )
+from hnr_planner.core.planning.planners.target import holds_target
 from hnr_planner.core.spaces.grid.slabs import LEFT, RIGHT
+import numpy as np
 
 #: Ratio of the length of a path to that of another below which the former counts as shorter.
 NEARER = 1.0 - 1e-13
 
 
 @kernel
-def expand(slabs, frontier, goal, goal_slab, n_iterations):
+def expand(slabs, frontier, target, n_iterations):
     """
     Expand at most ``n_iterations`` nodes in the order of their estimates; return how many.
 
-    It ends early when the shortest path to ``goal`` (2,) is found, no node is open, or the arrays
-    of ``frontier`` may have too few rows for the next node.
+    It ends early when the shortest path to ``target`` is found, no node is open, or the arrays of
+    ``frontier`` may have too few rows for the next node.
     """
-    slabs, frontier, goal = borrowed(slabs), borrowed(frontier), borrowed(goal)
+    slabs, frontier = borrowed(slabs), borrowed(frontier)
     sizes, nodes, vertices = frontier.sizes, frontier.nodes, frontier.vertices
     for i in range(n_iterations):
         if is_over(frontier):
@@ -55,26 +59,27 @@ def expand(slabs, frontier, goal, goal_slab, n_iterations):
         slab = slabs.portals[portal, 4] if up == 1 else slabs.portals[portal, 3]
         ahead = slabs.above if up == 1 else slabs.below
         back = slabs.below if up == 1 else slabs.above
-        needed = 3 * (ahead[slab, 1] - ahead[slab, 0]) + 2 * (back[slab, 1] - back[slab, 0]) + 4
-        if max(sizes[N_NODES], sizes[N_VERTICES]) + needed > len(nodes):
+        needed = 3 * (ahead[slab, 1] - ahead[slab, 0]) + 2 * (back[slab, 1] - back[slab, 0]) + 7
+        if max(sizes[N_NODES], sizes[N_VERTICES], sizes[N_OPEN]) + needed > len(nodes):
             return i
         pop(frontier)
         root = int(nodes[row, ROOT])
         corner = int(vertices[root, CORNER])
         if corner != NONE and vertices[root, DISTANCE] > frontier.nearest[corner]:
             continue
-        if slab == goal_slab:
-            _reach_goal(slabs, frontier, goal, row)
-        else:
-            _expand_ahead(slabs, frontier, goal, row, ahead[slab, 0], ahead[slab, 1])
+        holds = holds_target(slabs, target, slab)
+        if holds:
+            _reach_target(slabs, frontier, target, row, slab)
+        if slab != target.slab:
+            _expand_ahead(slabs, frontier, target, row, ahead[slab, 0], ahead[slab, 1])
         for side in (LEFT, RIGHT):
-            _expand_around(slabs, frontier, goal, row, side, slab, slab == goal_slab)
+            _expand_around(slabs, frontier, target, row, side, slab, holds)
     is_over(frontier)
     return n_iterations
 
 
 @kernel
-def _expand_ahead(slabs, frontier, goal, row, first, last):
+def _expand_ahead(slabs, frontier, target, row, first, last):
     """Add nodes for the portals ``first`` to ``last`` - 1 that lie in the cone of node ``row``."""
     nodes, vertices = frontier.nodes, frontier.vertices
     up, root = int(nodes[row, UP]), int(nodes[row, ROOT])
@@ -96,16 +101,16 @@ def _expand_ahead(slabs, frontier, goal, row, first, last):
             a, b = left, line
         if up * _side_of(x, y, rx, ry, right, line) >= 0.0:
             c, d = right, line
-        add_node(slabs, frontier, goal, root, a, b, c, d, k, up)
+        add_node(slabs, frontier, target, root, a, b, c, d, k, up)
 
 
 @kernel
-def _expand_around(slabs, frontier, goal, row, side, slab, holds_goal):
+def _expand_around(slabs, frontier, target, row, side, slab, holds):
     """
-    Add the nodes, or the goal, beyond a bend at the corner on one side of node ``row``.
+    Add the nodes, and the target, beyond a bend at the corner on one side of node ``row``.
 
     Nothing is added where the bound of the cone on that side is no corner of an obstacle, or a
-    shorter path to the corner is known. ``holds_goal`` states whether ``slab`` holds the goal.
+    shorter path to the corner is known. ``holds`` states whether ``slab`` holds the target.
     """
     nodes, vertices = frontier.nodes, frontier.vertices
     up, root, portal = int(nodes[row, UP]), int(nodes[row, ROOT]), int(nodes[row, PORTAL])
@@ -119,11 +124,13 @@ def _expand_around(slabs, frontier, goal, row, side, slab, holds_goal):
     if vertex == NONE:
         return
     outwards = up if side == LEFT else -up  # the sign of what lies beyond the bound
-    if holds_goal:
-        if outwards * _side_of(x, y, cx, cy, goal[0], goal[1]) > 0.0:
-            rest = math.hypot(goal[0] - cx, goal[1] - cy)
+    if slab == target.slab:
+        if outwards * _side_of(x, y, cx, cy, target.x, target.y) > 0.0:
+            rest = math.hypot(target.x - cx, target.y - cy)
             push(frontier, vertices[vertex, DISTANCE] + rest, NONE - vertex)
         return
+    if holds:
+        reach_disc(slabs, frontier, target, vertex, slab, np.empty((0, 4)))
     ahead = slabs.above if up == 1 else slabs.below
     for k in range(ahead[slab, 0], ahead[slab, 1]):
         line = slabs.portals[k, 2]
@@ -134,9 +141,9 @@ def _expand_around(slabs, frontier, goal, row, side, slab, holds_goal):
         if outwards * _side_of(x, y, cx, cy, inner, line) < 0.0:
             ix, iy = 2.0 * cx - x, 2.0 * cy - y
         if side == LEFT:
-            add_node(slabs, frontier, goal, vertex, outer, line, ix, iy, k, up)
+            add_node(slabs, frontier, target, vertex, outer, line, ix, iy, k, up)
         else:
-            add_node(slabs, frontier, goal, vertex, ix, iy, outer, line, k, up)
+            add_node(slabs, frontier, target, vertex, ix, iy, outer, line, k, up)
     back = slabs.below if up == 1 else slabs.above
     for k in range(back[slab, 0], back[slab, 1]):
         left, right = slabs.portals[k, 0], slabs.portals[k, 1]
@@ -145,19 +152,28 @@ def _expand_around(slabs, frontier, goal, row, side, slab, holds_goal):
         if (near < cx) if side == LEFT else (near > cx):
             turn = _reach_corner(frontier, vertex, near, cy, 2 * k + near_side)
             if turn != NONE:
-                add_node(slabs, frontier, goal, turn, left, cy, right, cy, k, -up)
+                add_node(slabs, frontier, target, turn, left, cy, right, cy, k, -up)
 
 
 @kernel
-def _reach_goal(slabs, frontier, goal, row):
-    """Push the goal on the heap where it lies in the cone of node ``row``."""
+def _reach_target(slabs, frontier, target, row, slab):
+    """Push the target on the heap where it lies in the cone of node ``row`` and in ``slab``."""
     nodes, vertices = frontier.nodes, frontier.vertices
     up, root = int(nodes[row, UP]), int(nodes[row, ROOT])
     x, y = vertices[root, X], vertices[root, Y]
-    left = up * _side_of(x, y, nodes[row, LEFT_X], nodes[row, LEFT_Y], goal[0], goal[1])
-    right = up * _side_of(x, y, nodes[row, RIGHT_X], nodes[row, RIGHT_Y], goal[0], goal[1])
+    lx, ly = nodes[row, LEFT_X], nodes[row, LEFT_Y]
+    rx, ry = nodes[row, RIGHT_X], nodes[row, RIGHT_Y]
+    if target.radius > 0.0:
+        bounds = np.empty((2, 4))
+        to, away = bounds[0], bounds[1]  # lines to the root and away from it, the cone on the left
+        to[0], to[1], to[2], to[3] = (lx, ly, x, y) if up == 1 else (rx, ry, x, y)
+        away[0], away[1], away[2], away[3] = (x, y, rx, ry) if up == 1 else (x, y, lx, ly)
+        reach_disc(slabs, frontier, target, root, slab, bounds)
+        return
+    left = up * _side_of(x, y, lx, ly, target.x, target.y)
+    right = up * _side_of(x, y, rx, ry, target.x, target.y)
     if left <= 0.0 <= right:
-        rest = math.hypot(goal[0] - x, goal[1] - y)
+        rest = math.hypot(target.x - x, target.y - y)
         push(frontier, vertices[root, DISTANCE] + rest, NONE - root)
 
 

@@ -18,6 +18,7 @@ from typing import NamedTuple
 
 from hnr_planner.core.checks import Floats
 from hnr_planner.core.kernels.kernel import kernel
+from hnr_planner.core.planning.planners.target import holds_target, nearest_of_disc, off_line
 from hnr_planner.core.spaces.grid.slabs import slab_at, THROUGH
 import numpy as np
 from numpy.typing import NDArray
@@ -43,18 +44,19 @@ class Frontier(NamedTuple):
     nodes : (rows, 7)
         Search nodes; columns ``ROOT`` to ``UP``.
     vertices : (rows, 5)
-        The start, row 0, and the corners reached; columns ``X`` to ``CORNER``.
+        The start, row 0, the corners reached, and the points of a disc where the search may end;
+        columns ``X`` to ``CORNER``.
     estimates, heap : (rows,)
         Binary heap of open nodes: lower bounds on the length of paths through each node, and the
-        row of each node in ``nodes``; ``NONE - row`` stands for the goal reached from the vertex
-        in that row.
+        row of each node in ``nodes``; ``NONE - row`` stands for the target, a point reached from
+        the vertex in that row, or a disc reached at that vertex.
     nearest : (2 n_portals,)
         Length of the shortest path by which each corner has been reached; inf at first.
     is_open : (n_slabs,) bool
-        Slabs that a path may pass: all but dead ends that hold neither start nor goal.
+        Slabs that a path may pass: all but dead ends that hold neither start nor target.
     sizes : (4,) int64
-        Numbers of nodes, of vertices and of open nodes, and the row of the vertex from which the
-        goal was reached, NONE (-1) while the search is not solved.
+        Numbers of nodes, of vertices and of open nodes, and the row of the last vertex of the
+        shortest path, NONE (-1) while the search is not solved.
 
     """
 
@@ -68,13 +70,13 @@ class Frontier(NamedTuple):
 
 
 @kernel
-def open_frontier(slabs, start, goal, capacity):
+def open_frontier(slabs, start, target, capacity):
     """
-    Return the state of a new search from ``start`` to ``goal``, with its first nodes.
+    Return the state of a new search from ``start`` (2,) to ``target``, with its first nodes.
 
-    Both are free points (2,), kernel frame, that lie on no line between rows. The arrays have
-    ``capacity`` rows.
+    The start is a free point, kernel frame. The arrays have ``capacity`` rows.
     """
+    x, y = start[0], off_line(start[1])
     frontier = Frontier(
         np.empty((capacity, 7)),
         np.empty((capacity, 5)),
@@ -85,18 +87,20 @@ def open_frontier(slabs, start, goal, capacity):
         np.zeros(4, dtype=np.int64),
     )
     frontier.sizes[FINAL] = NONE
-    add_vertex(frontier, start[0], start[1], 0.0, NONE, NONE)
-    slab, goal_slab = slab_at(slabs, start[0], start[1]), slab_at(slabs, goal[0], goal[1])
+    add_vertex(frontier, x, y, 0.0, NONE, NONE)
+    slab = slab_at(slabs, x, y)
     _open_exits(slabs, frontier, slab)
-    _open_exits(slabs, frontier, goal_slab)
-    if slab == goal_slab:
-        push(frontier, math.hypot(goal[0] - start[0], goal[1] - start[1]), NONE)
+    _open_exits_of_target(slabs, frontier, target)
+    if slab == target.slab:
+        push(frontier, math.hypot(target.x - x, target.y - y), NONE)
         return frontier
+    if holds_target(slabs, target, slab):
+        reach_disc(slabs, frontier, target, 0, slab, np.empty((0, 4)))
     for up in (1, -1):
         edge = slabs.above if up == 1 else slabs.below
         for k in range(edge[slab, 0], edge[slab, 1]):
-            left, right, y = slabs.portals[k, 0], slabs.portals[k, 1], slabs.portals[k, 2]
-            add_node(slabs, frontier, goal, 0, left, y, right, y, k, up)
+            left, right, line = slabs.portals[k, 0], slabs.portals[k, 1], slabs.portals[k, 2]
+            add_node(slabs, frontier, target, 0, left, line, right, line, k, up)
     return frontier
 
 
@@ -105,7 +109,7 @@ def first_capacity(slabs, start):
     """Return how many rows the arrays of a search from ``start`` (2,) need for its first nodes."""
     slab = slab_at(slabs, start[0], start[1])
     above = slabs.above[slab, 1] - slabs.above[slab, 0]
-    return above + slabs.below[slab, 1] - slabs.below[slab, 0] + 2
+    return above + slabs.below[slab, 1] - slabs.below[slab, 0] + 3
 
 
 @kernel
@@ -117,11 +121,40 @@ def _open_exits(slabs, frontier, slab):
 
 
 @kernel
+def _open_exits_of_target(slabs, frontier, target):
+    """Mark as open all slabs that hold the target, and those on the way out of their dead ends."""
+    if target.radius == 0.0:
+        _open_exits(slabs, frontier, target.slab)
+        return
+    first = max(math.floor(target.y - target.radius), 0.0)
+    last = min(math.floor(target.y + target.radius), len(slabs.rows) - 2.0)
+    for row in range(int(first), int(last) + 1):
+        for k in range(slabs.rows[row], slabs.rows[row + 1]):
+            slab = slabs.runs[k]
+            if not frontier.is_open[slab] and holds_target(slabs, target, slab):
+                _open_exits(slabs, frontier, slab)
+
+
+@kernel
+def reach_disc(slabs, frontier, target, root, slab, bounds):
+    """
+    Push the point of a disc nearest to vertex ``root`` on the heap, where a slab holds one.
+
+    Only points within ``bounds`` (k, 4) count; see ``nearest_of_disc``.
+    """
+    x, y = frontier.vertices[root, X], frontier.vertices[root, Y]
+    px, py = nearest_of_disc(slabs, target, slab, x, y, bounds)
+    if not math.isnan(px):
+        length = frontier.vertices[root, DISTANCE] + math.hypot(px - x, py - y)
+        push(frontier, length, NONE - add_vertex(frontier, px, py, length, root, NONE))
+
+
+@kernel
 def is_over(frontier):
     """
-    Return whether the search has ended: the goal is first in the heap, or the heap is empty.
+    Return whether the search has ended: the target is first in the heap, or the heap is empty.
 
-    Where the goal comes first, the vertex from which it was reached is stored in ``sizes``.
+    Where the target comes first, the last vertex of the shortest path is stored in ``sizes``.
     """
     sizes = frontier.sizes
     if sizes[N_OPEN] > 0 and frontier.heap[0] <= NONE:
@@ -141,7 +174,7 @@ def add_vertex(frontier, x, y, distance, parent, corner):
 
 
 @kernel
-def add_node(slabs, frontier, goal, root, lx, ly, rx, ry, portal, up):
+def add_node(slabs, frontier, target, root, lx, ly, rx, ry, portal, up):
     """
     Add the node of a root vertex and a cone through a portal, and push it on the heap.
 
@@ -159,10 +192,13 @@ def add_node(slabs, frontier, goal, root, lx, ly, rx, ry, portal, up):
     x, y = vertex[X], vertex[Y]
     left = max(_crossing(x, y, lx, ly, line), float(slabs.portals[portal, 0]))
     right = min(_crossing(x, y, rx, ry, line), float(slabs.portals[portal, 1]))
-    goal_y = goal[1] if up * (goal[1] - line) > 0.0 else 2.0 * line - goal[1]
-    at = _crossing(x, y, goal[0], goal_y, line) if y != line else x
+    goal_y = target.y if up * (target.y - line) > 0.0 else 2.0 * line - target.y
+    at = _crossing(x, y, target.x, goal_y, line) if y != line else x
     at = min(max(at, left), right)
-    rest = math.hypot(at - x, line - y) + math.hypot(goal[0] - at, goal_y - line)
+    rest = math.hypot(at - x, line - y) + math.hypot(target.x - at, goal_y - line)
+    if target.radius > 0.0:
+        near = min(max(x, left), right)
+        rest = max(rest - target.radius, math.hypot(near - x, line - y))
     push(frontier, vertex[DISTANCE] + rest, row)
 
 

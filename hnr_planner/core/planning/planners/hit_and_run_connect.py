@@ -32,7 +32,8 @@ from hnr_planner.core.planning.planners.two_trees import (
     TwoTreeSearch,
     with_rows,
 )
-from hnr_planner.core.sampling.draws import draw_between, draw_direction
+from hnr_planner.core.sampling.draws import draw_between
+from hnr_planner.core.spaces.lines import draw_direction
 from hnr_planner.core.spaces.primitives import component, first_exit, segment_is_free
 from hnr_planner.core.trees import NONE
 import numpy as np
@@ -182,7 +183,7 @@ def _step(space, x, rng, directions, y):
     """
     u, best, longest = directions[0], directions[1], 0.0
     for _ in range(N_RAYS):
-        draw_direction(rng, u)
+        draw_direction(space, rng, u)
         reach = first_exit(space, x, u, 0.0, np.inf)
         if reach > longest:
             longest = reach

@@ -9,10 +9,12 @@ Source: Cui, Harabor and Grastien, "Compromise-free pathfinding on a navigation 
 here on the slabs of a grid.
 
 Free space is open, so the shortest path is a limit: its bends are corners of obstacles. The path
-that is returned passes each corner at the space's margin.
+that is returned passes each corner at the space's margin. With a goal region it ends at the point
+of the region that is the nearest to the start along free paths; points of the region that are
+nearer than the margin to an obstacle may be left out.
 """
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 import math
 from typing import ClassVar
 
@@ -37,8 +39,8 @@ from hnr_planner.core.planning.planners.cones import (
     open_frontier,
     PARENT,
 )
+from hnr_planner.core.planning.planners.target import make_target, Target
 from hnr_planner.core.spaces.grid.grid_space import GridSpace
-from hnr_planner.core.spaces.grid.slabs import OFF_LINE, slab_at
 from hnr_planner.core.spaces.primitives import first_exit
 from hnr_planner.core.spaces.space import Space
 from hnr_planner.core.trees import rows_to
@@ -53,33 +55,37 @@ GRAZED_MAX = 64
 
 @dataclass(frozen=True)
 class Polyanya:
-    """
-    The planner of the exact shortest path on a grid. It draws nothing: the seed has no effect.
+    """The planner of the exact shortest path on a grid; it draws nothing, whatever the seed."""
 
-    Attributes
-    ----------
-    space : GridSpace, optional
-        The space whose slabs are searched; ``for_space`` sets it.
-
-    """
-
-    space: GridSpace | None = field(default=None, repr=False)
     name: ClassVar[str] = 'polyanya'
 
-    def for_space(self, space: Space) -> 'Polyanya':
+    def for_space(self, space: Space) -> 'PolyanyaInGrid':
         """Return the planner for ``space``, or raise RequestError where that is no GridSpace."""
         if not isinstance(space, GridSpace):
             raise RequestError(f'polyanya plans in a GridSpace, got a {type(space).__name__}')
-        return replace(self, space=space)
+        return PolyanyaInGrid(space)
 
     def start(self, problem: Problem, rng: Stream) -> 'PolyanyaSearch':
-        """
-        Return a search that begins at the problem's start; ``rng`` is not used.
+        """Raise RequestError: a search needs the slabs of a space (``for_space``)."""
+        raise RequestError('Polyanya has no space yet: plan puts in that of its request')
 
-        Raises RequestError where the planner has no space yet (``for_space``).
-        """
-        if self.space is None:
-            raise RequestError('Polyanya has no space yet: plan puts in that of its request')
+
+@dataclass(frozen=True)
+class PolyanyaInGrid(Polyanya):
+    """
+    The planner of the exact shortest path on one grid.
+
+    Attributes
+    ----------
+    space : GridSpace
+        The space whose slabs are searched.
+
+    """
+
+    space: GridSpace = field(repr=False)
+
+    def start(self, problem: Problem, rng: Stream) -> 'PolyanyaSearch':
+        """Return a search that begins at the problem's start; ``rng`` is not used."""
         return PolyanyaSearch(problem, self.space)
 
 
@@ -88,23 +94,21 @@ class PolyanyaSearch:
     """
     A running search of Polyanya; a transition is the expansion of one cone.
 
-    ``samples`` are the start and the corners at which shortest paths from the start bend. The
-    slabs and the first cones are made by the first ``advance``: on a large grid, interpreted, that
-    takes seconds, and only in ``advance`` can a limit interrupt the work.
+    ``samples`` are the start, the corners at which shortest paths from the start bend, and points
+    of a goal region that such paths reach. The slabs and the first cones are made by the first
+    ``advance``: on a large grid, interpreted, that takes seconds, and only in ``advance`` can a
+    limit interrupt the work.
     """
 
     problem: Problem
     space: GridSpace
     iterations: int = field(init=False, default=0)
     taut: ClassVar[bool] = True
-    _start: Floats = field(init=False)
-    _goal: Floats = field(init=False)
     _frontier: Frontier = field(init=False)
-    _is_open: bool = field(init=False, default=False)
+    _target: Target | None = field(init=False, default=None)
 
     def __post_init__(self) -> None:
-        self._start, self._goal = _off_lines(self.problem.start), _off_lines(self.problem.goal)
-        self._frontier = _frontier_at(self._start)
+        self._frontier = _frontier_at(self.problem.start)
 
     @property
     def solved(self) -> bool:
@@ -114,20 +118,32 @@ class PolyanyaSearch:
     @property
     def lower_bound(self) -> float:
         """
-        Lower bound on the length of free paths from start to goal, kernel frame.
+        Lower bound on the length of free paths from start to goal or region, kernel frame.
 
         It is the least length itself once the search is solved, and inf where no path exists.
         """
-        if not self._is_open:
-            return math.dist(self._start, self._goal)
+        if self._target is None:
+            problem = self.problem
+            return max(math.dist(problem.start, problem.goal) - problem.goal_radius, 0.0)
         if self._frontier.sizes[N_OPEN] == 0:
             return math.inf
         return float(self._frontier.estimates[0])
 
     @property
     def samples(self) -> Floats:
-        """Start and corners reached (k, 2), kernel frame; corners again for shorter paths."""
-        return self._frontier.vertices[: self._frontier.sizes[N_VERTICES], :DISTANCE]
+        """
+        Start and points reached (k, 2), kernel frame, at the margin from their corners.
+
+        A corner is there again where a shorter path to it was found later.
+        """
+        vertices = self._frontier.vertices[: self._frontier.sizes[N_VERTICES]]
+        points, corners = vertices[:, :DISTANCE].copy(), vertices[:, CORNER].astype(np.int64)
+        at_corners = np.flatnonzero(corners != NONE)
+        if len(at_corners) > 0:  # there are slabs by then, which take time to make
+            steps = self.space.slabs.steps.reshape(-1, 2)[corners[at_corners]]
+            points[at_corners] += self.problem.margin * steps
+        points[0] = self.problem.start
+        return points
 
     @property
     def parents(self) -> NDArray[np.int64]:
@@ -148,30 +164,32 @@ class PolyanyaSearch:
     @property
     def path(self) -> Floats:
         """Path (m, 2) of a solved search, kernel frame, at the margin from the corners passed."""
-        frontier, problem = self._frontier, self.problem
-        rows = rows_to(self.parents, int(frontier.sizes[FINAL]))
-        corners = frontier.vertices[rows[1:], CORNER].astype(np.int64)
-        steps = self.space.slabs.steps.reshape(-1, 2)[corners]
-        bends = frontier.vertices[rows[1:], :DISTANCE] + problem.margin * steps
-        points = np.vstack([problem.start, bends, problem.goal])
+        problem = self.problem
+        points = self.samples[rows_to(self.parents, int(self._frontier.sizes[FINAL]))]
+        if problem.goal_radius == 0.0:
+            points = np.vstack([points, problem.goal])
         return step_aside(problem.space, points, problem.margin)
 
     def advance(self, n_iterations: int) -> None:
         """Expand at most ``n_iterations`` cones, fewer once solved or when no cone is left."""
-        slabs = self.space.slabs
-        if not self._is_open:
-            capacity = max(INITIAL_CAPACITY, first_capacity(slabs, self._start))
-            self._frontier = open_frontier(slabs, self._start, self._goal, capacity)
-            self._is_open = True
-        goal_slab = slab_at(slabs, *self._goal)
+        if self._target is None:
+            self._target = self._open()
         end = self.iterations + n_iterations
         while self.iterations < end and not self.solved:
-            before = self.iterations
-            self.iterations += expand(slabs, self._frontier, self._goal, goal_slab, end - before)
+            left = end - self.iterations
+            self.iterations += expand(self.space.slabs, self._frontier, self._target, left)
             exhausted = self._frontier.sizes[N_OPEN] == 0
             if self.solved or exhausted or self.iterations == end:
                 break
             self._grow()
+
+    def _open(self) -> Target:
+        """Make the first cones; return the target of the search."""
+        slabs, problem = self.space.slabs, self.problem
+        target = make_target(slabs, problem.goal, problem.goal_radius, problem.margin)
+        capacity = max(INITIAL_CAPACITY, first_capacity(slabs, problem.start))
+        self._frontier = open_frontier(slabs, problem.start, target, capacity)
+        return target
 
     def _grow(self) -> None:
         frontier = self._frontier
@@ -190,12 +208,6 @@ def _frontier_at(start: Floats) -> Frontier:
     nodes, nothing, rows = np.empty((0, 7)), np.empty(0), np.empty(0, dtype=np.int64)
     sizes = np.array([0, 1, 0, NONE])
     return Frontier(nodes, vertex, nothing, rows, nothing, np.empty(0, dtype=np.bool_), sizes)
-
-
-def _off_lines(point: Floats) -> Floats:
-    """Return a free point (2,), moved up by ``OFF_LINE`` where it lies on a line between rows."""
-    x, y = point.tolist()
-    return np.array([x, y + OFF_LINE if y == math.floor(y) else y])
 
 
 @kernel

@@ -117,13 +117,13 @@ class TwoTreeSearch(ABC):
         trees = self._table
         if trees is None:
             return self.problem.start[np.newaxis]
-        return trees.vertices[: int(trees.sizes.sum())]
+        return trees.vertices[: sum(trees.sizes.tolist())]
 
     @property
     def parents(self) -> NDArray[np.int64]:
         """Index (k,) of the vertex from which each vertex was reached; -1 for the roots."""
         trees = self._table
-        return np.array([NONE]) if trees is None else trees.parents[: int(trees.sizes.sum())]
+        return np.array([NONE]) if trees is None else trees.parents[: sum(trees.sizes.tolist())]
 
     @property
     def path(self) -> Floats:

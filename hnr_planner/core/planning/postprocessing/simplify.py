@@ -15,6 +15,7 @@ from hnr_planner.core.lengths import path_length
 from hnr_planner.core.planning.homology import Islands, NO_ISLANDS
 from hnr_planner.core.planning.limits import Budget
 from hnr_planner.core.planning.postprocessing.shortcuts import join, pull, relax, skip
+from hnr_planner.core.spaces.lines import check_straight_lines
 from hnr_planner.core.spaces.space import Space
 import numpy as np
 from numpy.typing import ArrayLike
@@ -79,6 +80,7 @@ def simplify(
 
 def check_path(space: Space, path: ArrayLike) -> Floats:
     """Return ``path`` (m, dim) as a fresh array of free segments, or raise RequestError."""
+    check_straight_lines(space, 'simplify')
     points = check_points('path', path, space.dim)
     if points.ndim != 2 or len(points) < 2:
         raise RequestError(f'path must have at least two points, got shape {points.shape}')

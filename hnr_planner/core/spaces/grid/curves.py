@@ -26,8 +26,13 @@ def first_exit_from_grid(grid, curve, end):
 
     The curve is in the kernel frame [cells].
     """
-    free_distance = grid.free_distance
     x, y = coordinate(curve, 0), coordinate(curve, 1)
+    return first_exit_of_coordinates(grid.free_distance, x, y, end)
+
+
+@kernel
+def first_exit_of_coordinates(free_distance, x, y, end):
+    """Return the first parameter in [0, ``end``] at which the point (x, y) is not free, or inf."""
     if not is_free(free_distance, at(x, 0.0), at(y, 0.0)):
         return 0.0
     t = 0.0

@@ -151,7 +151,8 @@ class GridSpace(FramedSpace):
             raise SpaceError(f'robot_radius must be at least 0 and finite, got {radius!r}')
         cells = radius / frame.resolution
         distance = free_distance(inflate(occupied, cells) | closed)
-        obstacles = Obstacles(free_distance(occupied, closed_rim=False), cells, inflation)
+        walls = free_distance(occupied, closed_rim=False)
+        obstacles = Obstacles(walls, cells, inflation, closed)
         return cls(frame, radius, GridData(distance, components(distance > 0)), obstacles)
 
     def __repr__(self) -> str:
@@ -172,6 +173,15 @@ class GridSpace(FramedSpace):
     def occupied(self) -> Bools:
         """Which cells (rows, cols) are occupied in the map, before inflation."""
         return self._obstacles.occupied
+
+    @property
+    def uninflated(self) -> Bools:
+        """
+        Which cells (rows, cols) are blocked without inflation: occupied, or unknown and closed.
+
+        Neither the inflation by the robot's radius counts nor that of a costmap.
+        """
+        return self._obstacles.uninflated
 
     def is_obstacle(self, row: int, column: int) -> bool:
         """Return whether cell [row, column] is occupied, and not as inflation in a costmap."""

@@ -36,17 +36,28 @@ class Obstacles:
     costmap_inflation : (rows, cols) bool or None
         Which occupied cells are themselves the inflation of a costmap; None if the map is no
         costmap.
+    closed : (rows, cols) bool
+        Which cells are blocked because they are unknown.
 
     """
 
     distance: NDArray[np.uint8]
     radius: float
     costmap_inflation: Bools | None
+    closed: Bools
 
     @property
     def occupied(self) -> Bools:
         """Which cells (rows, cols) are occupied in the map, before inflation."""
         return self.distance[1:-1, 1:-1] == 0
+
+    @property
+    def uninflated(self) -> Bools:
+        """Which cells (rows, cols) are obstacles or unknown and closed, without any inflation."""
+        occupied = self.occupied
+        if self.costmap_inflation is not None:
+            occupied = occupied & ~self.costmap_inflation
+        return occupied | self.closed
 
     def is_obstacle(self, row: int, column: int) -> bool:
         """Return whether cell [row, column] is occupied, and not as inflation in a costmap."""

@@ -88,7 +88,7 @@ def _component(grid, x):
 @kernel
 def _first_exit(grid, x, u, t, horizon):
     """Return the first parameter from ``t`` on at which the ray touches a blocked cell."""
-    return _traverse(grid.free_distance, x[0], x[1], u[0], u[1], t, horizon)
+    return traverse(grid.free_distance, x[0], x[1], u[0], u[1], t, horizon)
 
 
 @touches.register(GridData)
@@ -165,11 +165,11 @@ def _segment_is_free(grid, a, b):
     dx, dy = b[0] - a[0], b[1] - a[1]
     if dx == 0.0 and dy == 0.0:
         return is_free(grid.free_distance, a[0], a[1])
-    return _traverse(grid.free_distance, a[0], a[1], dx, dy, 0.0, 1.0) > 1.0
+    return traverse(grid.free_distance, a[0], a[1], dx, dy, 0.0, 1.0) > 1.0
 
 
 @kernel
-def _traverse(free_distance, x, y, dx, dy, t, horizon):
+def traverse(free_distance, x, y, dx, dy, t, horizon):
     """
     Return the first parameter from ``t`` on at which the ray touches a blocked cell.
 

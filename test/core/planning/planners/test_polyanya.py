@@ -3,8 +3,9 @@
 import math
 from test.brute_force import path_collisions
 from test.visibility_graph import SCALE, shortest_length
+import threading
 
-from hnr_planner.core import BoxSpace, GridSpace, plan, PlannerStatus, Polyanya, RequestError
+from hnr_planner.core import BoxSpace, GridSpace, plan, PlannerStatus, RequestError
 import numpy as np
 import pytest
 
@@ -15,7 +16,7 @@ MARGINS = 1e-6
 
 def exact(space, start, goal, **arguments):
     arguments = {'time_limit': math.inf, 'max_iterations': 100_000, **arguments}
-    return plan(space, start, goal, algorithm=Polyanya(), **arguments)
+    return plan(space, start, goal, algorithm='polyanya', **arguments)
 
 
 def random_map(rng: np.random.Generator) -> np.ndarray:
@@ -67,6 +68,114 @@ def test_batches_of_any_size_give_the_same_path():
     assert cut.status is PlannerStatus.ITERATION_LIMIT
     again = exact(space, *ends, max_iterations=whole.iterations, seed=5)
     np.testing.assert_array_equal(whole.path, again.path)
+
+
+def test_the_seed_is_reported_and_changes_nothing():
+    space = GridSpace.from_blocked(np.random.default_rng(3).random((60, 60)) < 0.2)
+    cells = np.argwhere(space.largest_component())
+    ends = [space.cell_centres(*cell) for cell in cells[[0, -1]]]
+    first, second = (exact(space, *ends, seed=seed) for seed in (1, 2))
+    assert (first.seed, second.seed) == (1, 2)
+    np.testing.assert_array_equal(first.path, second.path)
+    np.testing.assert_array_equal(first.samples, second.samples)
+
+
+def test_nothing_is_searched_again_for_a_better_path():
+    blocked = np.zeros((30, 30), dtype=bool)
+    blocked[10:, 15] = True
+    space = GridSpace.from_blocked(blocked)
+    once = exact(space, (5.5, 25.5), (25.5, 25.5), clearance=2.0)
+    often = exact(space, (5.5, 25.5), (25.5, 25.5), clearance=2.0, optimize_iterations=5)
+    assert often.iterations == once.iterations > 0
+    np.testing.assert_array_equal(often.path, once.path)
+    assert often.lower_bound < often.length
+
+
+# -- limits --------------------------------------------------------------------------------------
+
+
+def noise(n: int) -> tuple[GridSpace, tuple]:
+    """Return a map that takes long to search, and its ends."""
+    space = GridSpace.from_blocked(np.random.default_rng(1).random((n, n)) < 0.3)
+    cells = np.argwhere(space.largest_component())
+    return space, tuple(space.cell_centres(*cell) for cell in cells[[0, -1]])
+
+
+def test_a_search_that_is_cut_has_a_bound_that_grows():
+    space, ends = noise(100)
+    shortest = exact(space, *ends).length
+    bounds = [exact(space, *ends, max_iterations=n).lower_bound for n in (1, 10, 100, 1000)]
+    assert math.dist(*ends) <= bounds[0] < bounds[-1] < shortest
+    assert bounds == sorted(bounds)
+
+
+def test_the_clock_and_a_cancellation_end_it():
+    space, ends = noise(400)
+    late = exact(space, *ends, time_limit=0.0)
+    assert late.status is PlannerStatus.TIMEOUT and late.cut_by_time
+    cancel = threading.Event()
+    cancel.set()
+    cancelled = exact(space, *ends, cancel=cancel)
+    assert cancelled.status is PlannerStatus.CANCELLED
+    for result in (late, cancelled):
+        assert result.path.shape == (0, 2)
+        assert math.dist(*ends) <= result.lower_bound < math.inf
+
+
+# -- goal regions --------------------------------------------------------------------------------
+
+
+def points_of_region(space, blocked, goal, radius, rng) -> np.ndarray:
+    """Return free points of a disc: on its rim, where it meets lines of cells, and inside."""
+    angles = rng.uniform(0.0, 2.0 * math.pi, 12)
+    points = [goal + (1.0 - 1e-9) * radius * np.array([math.cos(a), math.sin(a)]) for a in angles]
+    for axis in (0, 1):
+        for line in range(blocked.shape[1 - axis] + 1):
+            across = line - goal[axis]
+            if abs(across) < radius:
+                along = (1.0 - 1e-7) * math.sqrt(radius**2 - across**2)
+                for shift in (-1e-7, 1e-7):
+                    for side in (-1.0, 1.0):
+                        ends = (line + shift, goal[1 - axis] + side * along)
+                        points.append(np.array(ends if axis == 0 else ends[::-1]))
+    points += list(rng.uniform(0.0, blocked.shape[::-1], (8, 2)))
+    kept = [p for p in points if math.dist(p, goal) <= radius and space.contains(p)]
+    return np.array(kept).reshape(-1, 2)
+
+
+@pytest.mark.parametrize('seed', range(20))
+def test_no_point_of_a_goal_region_is_nearer(seed: int):
+    rng = np.random.default_rng(seed)
+    blocked = random_map(rng)
+    space = GridSpace.from_blocked(blocked)
+    for start in random_points(rng, blocked, 3):
+        start = tuple(x / SCALE for x in start)
+        goal, radius = rng.uniform(-1.0, np.add(blocked.shape[::-1], 1.0)), rng.choice([0.3, 1, 4])
+        if not space.contains(start):
+            continue
+        result = exact(space, start, goal, goal_radius=radius)
+        points = points_of_region(space, blocked, goal, radius, rng)
+        lengths = [exact(space, start, point).length for point in points]
+        if result.status is not PlannerStatus.SOLVED:
+            assert min(lengths, default=math.inf) == math.inf
+            continue
+        assert math.dist(result.path[-1], goal) <= radius
+        assert path_collisions(result.path, blocked, 1.0) == []
+        if result.iterations > 0:  # else the start lies in the region
+            assert result.length <= min(lengths, default=math.inf) + MARGINS
+            assert result.lower_bound == pytest.approx(result.length, abs=MARGINS)
+
+
+def test_a_region_is_reached_past_the_slab_that_is_seen_first():
+    """The wall's near side is in the region too, but a longer way off."""
+    blocked = np.zeros((20, 20), dtype=bool)
+    blocked[9, :18] = True
+    space = GridSpace.from_blocked(blocked)
+    result = exact(space, (1.5, 2.5), (1.5, 12.5), goal_radius=3.0)
+    around = math.dist((1.5, 2.5), (18.0, 9.0)) + 1.0 + math.dist((18.0, 10.0), (1.5, 12.5)) - 3.0
+    assert result.length == pytest.approx(around, abs=MARGINS)
+    near = exact(space, (1.5, 2.5), (1.5, 12.5), goal_radius=4.0)
+    assert near.length == pytest.approx(6.0, abs=MARGINS)
 
 
 def test_a_space_that_is_no_grid_is_refused():

@@ -163,10 +163,15 @@ def shortcuts_of_vertices(space: Space, path: NDArray, seed: int, n_tries: int =
     return path
 
 
+@njit
+def _is_beside_wall(x):
+    return not (0.4 < x[0] < 0.6 and x[1] < 0.8)
+
+
 def wall(dim: int) -> OracleSpace:
     """Return a unit cube with a wall that ends below its upper face."""
     return OracleSpace(
-        njit(lambda x: not (0.4 < x[0] < 0.6 and x[1] < 0.8)),
+        _is_beside_wall,
         [0.0] * dim,
         [1.0] * dim,
         resolution=0.01,

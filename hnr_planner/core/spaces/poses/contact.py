@@ -1,0 +1,248 @@
+"""
+The first contact of a moving footprint with blocked cells, exactly and without small steps.
+
+A footprint that moves along a constant twist first touches a cell in one of two ways:
+
+1. a convex vertex of the footprint, one that does not trail behind the motion, enters a cell: the
+   vertex moves along a line or an arc, whose first exit from the free cells is found cell by cell;
+2. a corner of the blocked cells meets a side of the footprint that leads the motion. Only corners
+   where one of four cells is blocked, or two that lie across, can do so: a straight wall is met by
+   a vertex first. The area that a side sweeps is searched for corners row by row, in pieces of the
+   motion that are skipped where no corner is near; for each corner the contact is the root of a
+   quadratic equation.
+
+Where a footprint is not convex, its outer boundary is all that counts, and no vertex at which it
+is not convex touches first. All lengths are in cells, in the kernel frame of a grid.
+"""
+
+import math
+
+from hnr_planner.core.kernels.kernel import inlined, kernel
+from hnr_planner.core.spaces.curves.curve import Winding
+from hnr_planner.core.spaces.grid.curves import first_exit_of_coordinates
+from hnr_planner.core.spaces.grid.traversal import traverse
+from hnr_planner.core.spaces.poses.motion import moved
+from hnr_planner.core.spaces.poses.overlap import with_span
+
+#: Distance [cells] at which a corner counts as touching a side: above rounding, and below the
+#: slack with which a single pose is tested, so that a motion from a free pose can begin.
+CLOSE = 1e-10
+#: Longest piece of a motion that is searched for corners at once: how far a point of the side
+#: moves [cells], and how far the footprint turns [rad].
+PIECE, PIECE_TURN = 8.0, 0.25
+#: Least distance [cells] that is skipped where no corner is near.
+LEAST_SKIP = 2.0
+#: Deviation from a line within the map [cells] up to which an arc is followed as a line.
+STRAIGHT = 1e-13
+#: Speed towards the outside, as a fraction of the speed, up to which a side or vertex trails.
+TRAILS = 1e-12
+
+
+@kernel
+def first_contact(free_distance, corner_distance, edges, x, y, yaw, vx, vy, omega, horizon):
+    """
+    Return the time of the first contact of a footprint that moves along a twist; inf for none.
+
+    Parameters
+    ----------
+    free_distance : (rows, columns) uint8
+        Chebyshev distance [cells] to the nearest blocked cell; 0 on the rim.
+    corner_distance : (rows + 1, columns + 1) uint8
+        Chebyshev distance from each grid point to the nearest corner of the blocked cells.
+    edges : (n, 6)
+        Sides of the footprint (``Footprint``).
+    x, y, yaw : float
+        The pose at time 0, which has to be free.
+    vx, vy, omega : float
+        The twist, in the robot's frame.
+    horizon : float
+        Time up to which the motion is followed; at most one turn is followed.
+
+    """
+    rows, columns = free_distance.shape
+    if abs(omega) * (rows + columns) * (rows + columns) <= STRAIGHT * math.hypot(vx, vy):
+        omega = 0.0
+    end = min(horizon, 2.0 * math.pi / abs(omega)) if omega != 0.0 else horizon
+    first, n = math.inf, len(edges)
+    cos, sin = math.cos(yaw), math.sin(yaw)
+    for k in range(n):
+        if edges[k, 5] == 0.0:
+            continue
+        bx, by = edges[k, 0], edges[k, 1]
+        wx, wy = vx - omega * by, vy + omega * bx
+        speed = math.hypot(wx, wy)
+        before = k - 1 if k > 0 else n - 1
+        outwards = max(
+            edges[k, 3] * wx - edges[k, 2] * wy, edges[before, 3] * wx - edges[before, 2] * wy
+        )
+        if speed == 0.0 or outwards < -TRAILS * speed:
+            continue
+        at_x, at_y = x + cos * bx - sin * by, y + sin * bx + cos * by
+        entry = _vertex_contact(
+            free_distance, at_x, at_y, yaw, wx, wy, omega, speed, min(end, first)
+        )
+        first = min(first, entry)
+    for k in range(n):
+        met = _edge_contact(
+            corner_distance,
+            edges[k, 0],
+            edges[k, 1],
+            edges[k, 2],
+            edges[k, 3],
+            edges[k, 4],
+            x,
+            y,
+            yaw,
+            vx,
+            vy,
+            omega,
+            min(end, first),
+        )
+        first = min(first, met)
+    return first
+
+
+@kernel
+def _vertex_contact(free_distance, x, y, yaw, wx, wy, omega, speed, end):
+    """
+    Return the time up to ``end`` at which a vertex at (x, y) enters a blocked cell; inf for none.
+
+    (wx, wy) is the vertex's velocity in the robot's frame, and ``speed`` the length of that.
+    """
+    if omega == 0.0:
+        cos, sin = math.cos(yaw), math.sin(yaw)
+        dx, dy = cos * wx - sin * wy, sin * wx + cos * wy
+        entry = traverse(free_distance, x, y, dx, dy, 0.0, end)
+        return entry if entry <= end else math.inf
+    heading, curvature = yaw + math.atan2(wy, wx), omega / speed
+    along_x = Winding(x, heading, curvature)
+    along_y = Winding(y, heading - math.pi / 2.0, curvature)
+    return first_exit_of_coordinates(free_distance, along_x, along_y, end * speed) / speed
+
+
+@kernel
+def _edge_contact(corner_distance, ax, ay, tx, ty, length, x, y, yaw, vx, vy, omega, end):
+    """
+    Return the time up to ``end`` at which a corner meets a side of the footprint; inf for none.
+
+    The side begins at (ax, ay) in the robot's frame and has the unit direction (tx, ty).
+    """
+    # The speed at which a point of the side moves outwards falls by omega for each unit along it.
+    wx, wy = vx - omega * ay, vy + omega * ax
+    outwards = ty * wx - tx * wy
+    begin, rest = 0.0, length
+    if omega > 0.0:
+        rest = min(rest, outwards / omega)
+    elif omega < 0.0:
+        begin = max(begin, outwards / omega)
+    wx_end, wy_end = wx - omega * length * ty, wy + omega * length * tx
+    speed = max(math.hypot(wx, wy), math.hypot(wx_end, wy_end))
+    if rest <= begin or max(outwards, outwards - omega * length) <= TRAILS * speed:
+        return math.inf
+    first_x, first_y = ax + begin * tx, ay + begin * ty
+    last_x, last_y = ax + rest * tx, ay + rest * ty
+    half = (rest - begin) / 2.0
+    longest = PIECE / speed
+    if omega != 0.0:
+        longest = min(longest, PIECE_TURN / abs(omega))
+    rows, columns = corner_distance.shape
+    s = 0.0
+    while s < end:
+        x0, y0, yaw0 = moved(x, y, yaw, vx, vy, omega, s)
+        cos, sin = math.cos(yaw0), math.sin(yaw0)
+        p0x, p0y = x0 + cos * first_x - sin * first_y, y0 + sin * first_x + cos * first_y
+        q0x, q0y = x0 + cos * last_x - sin * last_y, y0 + sin * last_x + cos * last_y
+        row = min(max(math.floor((p0y + q0y) / 2.0 + 0.5), 0), rows - 1)
+        column = min(max(math.floor((p0x + q0x) / 2.0 + 0.5), 0), columns - 1)
+        # The middle of the side is within half a cell of this grid point.
+        skip = corner_distance[row, column] - 1.0 - half
+        if skip > LEAST_SKIP:
+            s += skip / speed
+            continue
+        piece = min(longest, end - s)
+        x1, y1, yaw1 = moved(x, y, yaw, vx, vy, omega, s + piece)
+        cos1, sin1 = math.cos(yaw1), math.sin(yaw1)
+        p1x, p1y = x1 + cos1 * first_x - sin1 * first_y, y1 + sin1 * first_x + cos1 * first_y
+        q1x, q1y = x1 + cos1 * last_x - sin1 * last_y, y1 + sin1 * last_x + cos1 * last_y
+        # An arc leaves its chord by an eighth of speed times turn; the sides' crossing, if the
+        # centre of rotation is near the side, is twice as far from the nearest arc.
+        rim = 0.375 * speed * abs(omega) * piece * piece + 10.0 * CLOSE
+        last = math.tan(omega * piece / 2.0) * 2.0 / omega if omega != 0.0 else piece
+        least = math.inf
+        lowest = min(min(p0y, q0y), min(p1y, q1y)) - rim
+        highest = max(max(p0y, q0y), max(p1y, q1y)) + rim
+        row, top_row = max(math.ceil(lowest), 0), min(math.floor(highest), rows - 1)
+        while row <= top_row:
+            bottom, top = row - rim, row + rim
+            left, right = with_span(p0x, p0y, q0x, q0y, bottom, top, math.inf, -math.inf)
+            left, right = with_span(p1x, p1y, q1x, q1y, bottom, top, left, right)
+            left, right = with_span(p0x, p0y, p1x, p1y, bottom, top, left, right)
+            left, right = with_span(q0x, q0y, q1x, q1y, bottom, top, left, right)
+            if left > right:
+                row += 1
+                continue
+            column = max(math.ceil(left - rim), 0)
+            last_column = min(math.floor(right + rim), columns - 1)
+            while column <= last_column:
+                distance = corner_distance[row, column]
+                if distance == 0:
+                    dx, dy = column - x0, row - y0
+                    met = _corner_contact(
+                        cos * dx + sin * dy - ax,
+                        cos * dy - sin * dx - ay,
+                        ax,
+                        ay,
+                        tx,
+                        ty,
+                        length,
+                        vx,
+                        vy,
+                        omega,
+                    )
+                    if met <= last * (1.0 + 1e-9) + 1e-12:
+                        least = min(least, met)
+                    column += 1
+                else:
+                    column += int(distance)
+            row += 1
+        if least < math.inf:
+            if omega != 0.0:
+                least = math.atan(omega * least / 2.0) * 2.0 / omega
+            return min(s + least, end)
+        s += piece
+    return math.inf
+
+
+@inlined
+def _corner_contact(dx, dy, ax, ay, tx, ty, length, vx, vy, omega):
+    """
+    Return when a corner at (dx, dy) from the begin of a side meets the side; inf for never.
+
+    The corner is seen from the robot: it moves by the inverse twist. The result is
+    ``2 / omega tan(omega s / 2)`` for the time s at which it passes from the outside to the
+    inside, which is the time itself for a twist that does not turn.
+    """
+    # Velocity of the corner, and that turned by a right angle, along the normal and the side.
+    wx, wy = omega * (ay + dy) - vx, -omega * (ax + dx) - vy
+    above = ty * dx - tx * dy - CLOSE
+    approach, bend = ty * wx - tx * wy, -(ty * -wy - tx * wx)
+    # above (1 + (omega m / 2)^2) + approach m + omega bend m^2 / 2 = 0
+    square = above * omega * omega / 4.0 + bend * omega / 2.0
+    root = approach * approach - 4.0 * square * above
+    if root < 0.0:
+        return math.inf
+    root = math.sqrt(root)
+    if approach < 0.0:
+        m = 2.0 * above / (root - approach)
+    elif square < 0.0:
+        m = -(approach + root) / (2.0 * square)
+    else:
+        return math.inf
+    if m < 0.0:
+        return math.inf
+    turn = omega * m / 2.0
+    slide = tx * wx + ty * wy, -(tx * -wy + ty * wx)
+    along = (
+        tx * dx + ty * dy + (slide[0] * m + slide[1] * omega * m * m / 2.0) / (1.0 + turn * turn)
+    )
+    return m if -CLOSE <= along <= length + CLOSE else math.inf

@@ -1,0 +1,9 @@
+"""Where draws come from."""
+
+import numpy as np
+import pytest
+
+
+@pytest.fixture
+def rng():
+    return np.random.default_rng(20160823)
