@@ -12,8 +12,8 @@ from hnr_planner.server.requests import Pose
 from hnr_planner.server.respond import respond
 from hnr_planner.server.responses import PlanResponse
 
-#: Points of the first room from left to right, in an order that goes to and fro.
-TO_AND_FRO = [(1.5, 0.3), (0.8, 0.3), (1.2, 0.3)]
+#: Points of the first room, in an order that turns back twice.
+ZIGZAG = [(1.5, 0.3), (0.8, 0.3), (1.2, 0.3)]
 
 
 def ask(points: list[tuple[float, float]], **changes: Any) -> PlanResponse:
@@ -25,18 +25,18 @@ def ask(points: list[tuple[float, float]], **changes: Any) -> PlanResponse:
 
 
 def test_poses_are_taken_in_the_shortest_order_and_the_outcome_has_it() -> None:
-    response = ask(TO_AND_FRO)
+    response = ask(ZIGZAG)
     assert response.solved and response.why.startswith('poses in the order 2, 3, 1; leg 1: ')
     path = response.path.tolist()
-    places = [path.index(list(point)) for point in (TO_AND_FRO[1], TO_AND_FRO[2], TO_AND_FRO[0])]
+    places = [path.index(list(point)) for point in (ZIGZAG[1], ZIGZAG[2], ZIGZAG[0])]
     assert places == sorted(places) and places[-1] == len(path) - 1
     assert path_collisions(response.path, rooms() == 100, RESOLUTION) == []
 
 
 def test_the_order_stays_without_the_parameter() -> None:
-    response = ask(TO_AND_FRO, any_order=False)
+    response = ask(ZIGZAG, any_order=False)
     assert response.solved and 'order' not in response.why
-    assert response.path[-1].tolist() == list(TO_AND_FRO[-1])
+    assert response.path[-1].tolist() == list(ZIGZAG[-1])
 
 
 def test_a_pose_that_cannot_be_reached_is_named_by_its_place_in_the_request() -> None:
