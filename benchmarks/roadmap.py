@@ -1,73 +1,78 @@
 """
 Section: roadmaps; what they cost to build and repair, and the quality of their answers.
 
-A request is the whole call of ``plan()`` from Python; lengths are ratios over the shortest path
-known, from long searches and from a roadmap of twice the draws. A roadmap is repaired after a
-block of 20 x 20 cells has been put into free space, and again after it has been removed.
+A request is the whole call of ``plan()`` from Python; in a batch it is a share of a call of
+``Roadmap.distances``. Lengths are ratios over the lower bound of Polyanya. A roadmap is repaired
+after a block of 20 x 20 cells has been put into free space, and again after it has been removed.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
+import math
 import time
 from typing import NamedTuple, TypeVar
 
 from benchmarks.problems import Floats, Problem
 from benchmarks.progress import show
-from benchmarks.sections import Bench, on_all, Section, table
-from hnr_planner.core import GridSpace, plan, Roadmap
+from benchmarks.sections import Bench, milliseconds, on_all, Section, table, Verdict
+from hnr_planner.core import GridSpace, plan, Polyanya, Roadmap
 import numpy as np
 
-#: Repetitions of each request; searches for the shortest path known.
+#: Repetitions of each request, of each batch, and of building and repairing.
 REPEATS = 20
-SEARCHES, SEARCHES_QUICK = 100, 20
+#: Random requests in a batch.
+BATCH = 1000
 #: Side of the block that is put in and removed [cells].
 BLOCK = 20
 SEED = 0
-#: Targets: median time of a request [s], and median length over the best known.
-REQUEST, LENGTH = 0.1e-3, 1.01
+#: Targets: time to build [s] on maps of buildings, median time of a request and time of a request
+#: in a batch on these maps [s], and length over the lower bound.
+BUILD, REQUEST, IN_BATCH, LENGTH = 50e-3, 0.1e-3, 25e-6, 1.0 + 1e-6
+BUILDINGS = ('office', 'depot')
 
 Result = TypeVar('Result')
 
 
 class Row(NamedTuple):
-    """Results on one map: times [s] to build, repair and answer, nodes, ratios of lengths."""
+    """Results on one map: times [s] to build, repair and answer, memory, ratios of lengths."""
 
     name: str
     build: float
     nodes: int
+    megabytes: float
     requests: Floats
+    in_batch: float
     ratios: Floats
     block_comes: float
     block_goes: float
 
 
-def measure(problem: Problem, searches: int) -> Row:
+def measure(problem: Problem) -> Row:
     """Build a roadmap, answer requests, change the map and repair the roadmap."""
     space = problem.space
-    roadmap, build = _timed(lambda: Roadmap.build(space, seed=SEED))
-    grown = roadmap.grow()
+    roadmap, build = _fastest(lambda: Roadmap.build(space, seed=SEED))
     seconds, ratios = [], []
     for start, goal in problem.requests:
         answers = [
             _timed(lambda: plan(space, start, goal, algorithm=roadmap, seed=SEED))  # noqa: B023
             for _ in range(REPEATS)
         ]
-        known = [
-            plan(space, start, goal, algorithm=grown, seed=SEED),
-            plan(space, start, goal, seed=SEED, optimize_iterations=searches, time_limit=60.0),
-        ]
-        length = answers[0][0].length
+        shortest = plan(space, start, goal, algorithm=Polyanya(), time_limit=math.inf)
         seconds += [answer[1] for answer in answers]
-        ratios.append(length / min(length, *(path.length for path in known)))
+        ratios.append(answers[0][0].length / shortest.lower_bound)
+    starts, goals = _random_ends(space)
+    _, batch = _fastest(lambda: roadmap.distances(starts, goals))
     changed = _with_block(space)
-    mended, comes = _timed(lambda: roadmap.update(changed))
-    _, goes = _timed(lambda: mended.update(space))
+    repaired, comes = _fastest(lambda: roadmap.update(changed))
+    _, goes = _fastest(lambda: repaired.update(space))
     return Row(
         problem.name,
         build,
         len(roadmap.nodes),
+        roadmap.nbytes / 1e6,
         np.array(seconds),
+        batch / BATCH,
         np.array(ratios),
         comes,
         goes,
@@ -76,28 +81,52 @@ def measure(problem: Problem, searches: int) -> Row:
 
 def roadmap(bench: Bench) -> Section:
     """Measure a roadmap on every problem."""
-    Roadmap.build(GridSpace.from_blocked(np.zeros((3, 3), dtype=bool)), seed=0)
+    warm = Roadmap.build(GridSpace.from_blocked(np.zeros((3, 3), dtype=bool)), seed=0)
+    warm.distances([(0.5, 0.5)], [(2.5, 2.5)])
     rows = []
     for problem in bench.problems:
-        rows.append(measure(problem, SEARCHES_QUICK if bench.quick else SEARCHES))
-        show(f'roadmap of {problem.name}: built in {rows[-1].build:.1f} s')
-    slow = {
-        row.name: f'{1e6 * np.median(row.requests):.0f} us'
-        for row in rows
-        if np.median(row.requests) > REQUEST
-    }
-    long = {
-        row.name: f'{np.median(row.ratios):.3f}' for row in rows if np.median(row.ratios) > LENGTH
-    }
+        rows.append(measure(problem))
+        show(f'roadmap of {problem.name}: built in {milliseconds(rows[-1].build)} ms')
+    buildings = [row for row in rows if row.name in BUILDINGS]
     verdicts = [
-        on_all('a request with a roadmap, median', f'{1e6 * REQUEST:.0f} us', slow, len(rows)),
-        on_all('its length over the best known, median', f'{LENGTH:g}', long, len(rows)),
+        _at_most('a request with a roadmap, median', REQUEST, rows, lambda r: r.requests),
+        _at_most('a roadmap of a building', BUILD, buildings, lambda r: r.build),
+        _at_most('a request in a batch there', IN_BATCH, buildings, lambda r: r.in_batch),
+        on_all(
+            'its length over the lower bound',
+            f'{LENGTH:g}',
+            {row.name: f'{row.ratios.max():.7f}' for row in rows if row.ratios.max() > LENGTH},
+            len(rows),
+        ),
     ]
     head = (
-        'problem | nodes | build, s | block comes, s | block goes, s | request, us | p95 | length '
-        '| p95'
+        'problem | nodes | MB | build, ms | block comes, ms | block goes, ms | request, us | p95 '
+        '| in a batch, us | length, max'
     )
     return Section('Many requests on one map', table(head, map(_row, rows)), verdicts)
+
+
+def _at_most(
+    what: str, target: float, rows: list[Row], seconds: Callable[[Row], float | Floats]
+) -> Verdict:
+    """Return the verdict on the median of times [s], which has a target on all rows."""
+    medians = {row.name: float(np.median(seconds(row))) for row in rows}
+    slow = {name: f'{1e6 * time:.0f} us' for name, time in medians.items() if time > target}
+    return on_all(what, f'{1e6 * target:.0f} us', slow, len(rows))
+
+
+def _random_ends(space: GridSpace) -> tuple[Floats, Floats]:
+    """Return random starts and goals (BATCH, 2) in cells of the largest component."""
+    cells = np.argwhere(space.largest_component())
+    chosen = cells[np.random.default_rng(SEED).integers(len(cells), size=(2, BATCH))]
+    starts, goals = (space.cell_centres(*ends.T) for ends in chosen)
+    return starts, goals
+
+
+def _fastest(work: Callable[[], Result]) -> tuple[Result, float]:
+    """Return a result, and the least time [s] of ``REPEATS`` calls."""
+    results = [_timed(work) for _ in range(REPEATS)]
+    return results[0][0], min(seconds for _, seconds in results)
 
 
 def _timed(work: Callable[[], Result]) -> tuple[Result, float]:
@@ -119,12 +148,11 @@ def _with_block(space: GridSpace) -> GridSpace:
 
 def _row(row: Row) -> list[str]:
     median, late = np.quantile(row.requests, (0.5, 0.95)) * 1e6
-    typical, long = np.quantile(row.ratios, (0.5, 0.95))
-    seconds = (row.build, row.block_comes, row.block_goes)
     return [
         row.name,
         f'{row.nodes}',
-        *(f'{value:.2f}' for value in seconds),
-        *(f'{value:.0f}' for value in (median, late)),
-        *(f'{value:.4f}' for value in (typical, long)),
+        f'{row.megabytes:.2f}',
+        *map(milliseconds, (row.build, row.block_comes, row.block_goes)),
+        *(f'{value:.0f}' for value in (median, late, 1e6 * row.in_batch)),
+        f'{row.ratios.max():.7f}',
     ]

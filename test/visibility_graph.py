@@ -23,21 +23,20 @@ Cells = NDArray[np.bool_]
 def shortest_length(blocked: Cells, start: Point, goal: Point) -> float:
     """Return the length [cells] of the shortest path; inf where there is none."""
     points = [start, goal, *convex_corners(blocked)]
-    least, done = [math.inf] * len(points), [False] * len(points)
-    least[0] = 0.0
-    heap = [(0.0, 0)]
+    left, done = [math.dist(point, goal) for point in points], [False] * len(points)
+    heap = [(left[0], 0.0, 0, 0)]
     while heap:
-        length, i = heappop(heap)
-        if done[i]:
+        # A*; whether one point sees the next is tested only when that edge is the best.
+        _, length, i, j = heappop(heap)
+        if done[j] or not is_visible(blocked, points[i], points[j]):
             continue
-        if i == 1:
+        if j == 1:
             return length / SCALE
-        done[i] = True
-        for j, point in enumerate(points):
-            longer = length + math.dist(points[i], point)
-            if not done[j] and longer < least[j] and is_visible(blocked, points[i], point):
-                least[j] = longer
-                heappush(heap, (longer, j))
+        done[j] = True
+        for k, point in enumerate(points):
+            if not done[k]:
+                longer = length + math.dist(points[j], point)
+                heappush(heap, (longer + left[k], longer, j, k))
     return math.inf
 
 

@@ -3,6 +3,11 @@ from hnr_planner.core.errors import HnrError as HnrError
 from hnr_planner.core.errors import RequestError as RequestError
 from hnr_planner.core.errors import SpaceError as SpaceError
 from hnr_planner.core.errors import StuckError as StuckError
+from hnr_planner.core.planning.batch.distances import distances as distances
+from hnr_planner.core.planning.batch.plan_many import plan_many as plan_many
+from hnr_planner.core.planning.batch.plan_many import PlanBatch as PlanBatch
+from hnr_planner.core.planning.batch.tour import Tour as Tour
+from hnr_planner.core.planning.batch.tour import tour as tour
 from hnr_planner.core.planning.plan import plan as plan
 from hnr_planner.core.planning.planners.hit_and_run import HitAndRun as HitAndRun
 from hnr_planner.core.planning.planners.hit_and_run_connect import (

@@ -32,6 +32,7 @@ from hnr_planner.server.poses import MOST_POSES, pose_rows
 from hnr_planner.server.requests import check_request, PlanRequest, Pose
 from hnr_planner.server.responses import PlanResponse
 from hnr_planner.server.settings import Settings
+from hnr_planner.server.stop_order import in_short_order
 from hnr_planner.server.times import Times
 from hnr_planner.server.trajectories import trajectory_path
 from hnr_planner.server.waiting import NewestMap, wait_for_map
@@ -230,6 +231,7 @@ class _Job:
         """
         if not request.via:
             return self._plan(request, snapshot)
+        request, order = self._ordered(request, snapshot)
         legs: list[PlanResponse] = []
         start, ends = request.start, (*request.via, request.goal)
         for number, end in enumerate(ends, 1):
@@ -241,7 +243,31 @@ class _Job:
             start = replace(end, position=(x, y, 0.0))
         result = joined([leg.result for leg in legs if isinstance(leg.result, PlanResult)])
         why = '; '.join(f'leg {number}: {leg.why}' for number, leg in enumerate(legs, 1))
+        if order:
+            why = f'poses in the order {", ".join(map(str, order))}; {why}'
         return replace(legs[0], why=why, request=request, result=result)
+
+    def _ordered(
+        self, request: PlanRequest, snapshot: MapSnapshot
+    ) -> tuple[PlanRequest, list[int]]:
+        """
+        Return the request with its poses in a short order, and that order, where it may be any.
+
+        Without the parameter ``any_order`` it is the request as it came, and an empty list.
+        """
+        as_it_came: tuple[PlanRequest, list[int]] = request, []
+        if not self.settings.any_order:
+            return as_it_came
+        return self.limits.within(
+            lambda: in_short_order(
+                request,
+                snapshot.space,
+                self.settings.escape_radius,
+                self.limits.time_left,
+                self.limits.cancel,
+            ),
+            as_it_came,
+        )
 
     def _plan(
         self, request: PlanRequest, snapshot: MapSnapshot, n_paths: int | None = None

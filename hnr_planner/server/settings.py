@@ -145,6 +145,11 @@ class Settings:
         lower=0.0,
         upper=10.0,
     )
+    any_order: bool = setting(
+        False,
+        'Pass the poses of compute_path_through_poses, the last one included, in the order that '
+        'makes the path short.',
+    )
     transform_tolerance: float = setting(
         0.3,
         'Longest time to wait for the transform of a start or goal in another frame than the '

@@ -53,7 +53,7 @@ def test_help_names_what_the_core_has(run: Run) -> None:
 
 
 @pytest.mark.parametrize(
-    'command', [[], ['plan'], ['sample'], ['demo'], ['experiment'], ['compile']]
+    'command', [[], ['plan'], ['tour'], ['sample'], ['demo'], ['experiment'], ['compile']]
 )
 def test_help_imports_nothing_heavy(command: list[str]) -> None:
     program = f'from hnr_planner.cli.main import main\nassert main({[*command, "--help"]}) == 0'

@@ -206,6 +206,29 @@ def test_bond_lives_while_the_node_is_active(client: Client, planner: NodeProces
     assert 'Traceback' not in planner.log, planner.log
 
 
+@pytest.mark.skipif(find_spec('bondpy') is None, reason='bondpy comes with a ROS from apt only')
+def test_manager_resets_the_node_that_ends_under_its_bond(
+    client: Client, planner: NodeProcess
+) -> None:
+    """The calls of Nav2's lifecycle manager, in its order; each of them waits for a response."""
+    from bondpy.bondpy import Bond
+
+    assert change(client, CONFIGURE) == [True] and state(client) == INACTIVE
+    assert change(client, ACTIVATE) == [True] and state(client) == ACTIVE
+    manager = Client()
+    bond = Bond(manager.node, '/bond', 'hnr_planner')
+    bond.heartbeat_timeout = 120.0
+    bond.start()
+    assert bond.wait_until_formed(Duration(seconds=20))
+    planner.popen.send_signal(signal.SIGTERM)
+    assert bond.wait_until_broken(Duration(seconds=20))
+    assert change(client, DEACTIVATE) == [True] and state(client) == INACTIVE
+    assert change(client, CLEANUP) == [True]
+    assert planner.popen.wait(20.0) == 0
+    assert 'Traceback' not in planner.log, planner.log
+    manager.close()
+
+
 def test_parameters_change_in_every_state(client: Client) -> None:
     for transition in (CONFIGURE, ACTIVATE, DEACTIVATE, CLEANUP, SHUTDOWN[UNCONFIGURED]):
         (answer,) = client.set_parameters(robot_radius=0.01 * transition)

@@ -26,7 +26,7 @@ from hnr_planner.core.kernels.arithmetic import boxed
 from hnr_planner.core.kernels.cache_folder import cache_folder, compiler_lock
 from hnr_planner.core.kernels.clock import not_working
 from hnr_planner.core.kernels.interpreted_form import interpreted_form
-from hnr_planner.core.kernels.modes import Mode, mode, mode_of_thread
+from hnr_planner.core.kernels.modes import announce_compilation, Mode, mode, mode_of_thread
 from hnr_planner.core.kernels.parts import Part
 from numba import typeof
 from numba.core import config, types
@@ -109,6 +109,8 @@ class Kernel(CPUDispatcher):
             _called[self, signature] = None
         if wanted is Mode.COMPILED:
             with not_working():
+                if signature is not None and not self.load(signature):
+                    announce_compilation()
                 dispatcher: Any = super()
                 return dispatcher._compile_for_args(*arguments)
         if signature is None or signature in self._missing:

@@ -13,6 +13,7 @@ The environment variable ``HNR_PLANNER_KERNELS`` sets the mode of a process; wit
 from collections.abc import Iterator
 from contextlib import contextmanager
 from enum import Enum
+import logging
 import os
 import threading
 from typing import Any
@@ -33,9 +34,12 @@ class Mode(Enum):
 
 
 class _OfThread(threading.local):
-    """The mode that one thread has set for itself; None if the process's mode applies."""
+    """The mode that one thread has set for itself, and what it waits for machine code for."""
 
+    #: None if the process's mode applies.
     mode: Mode | None = None
+    #: None if no compilation is to be announced.
+    purpose: str | None = None
 
 
 def _checked(name: str, wanted: str) -> Mode:
@@ -43,6 +47,7 @@ def _checked(name: str, wanted: str) -> Mode:
     return Mode(check_choice(name, wanted, tuple(mode.value for mode in Mode)))
 
 
+_log = logging.getLogger('hnr_planner')
 _numba_config: Any = config
 _of_process = _checked(VARIABLE, os.environ.get(VARIABLE) or Mode.AUTO.value)
 _of_thread = _OfThread()
@@ -88,11 +93,23 @@ def mode_of_thread(wanted: Mode) -> Iterator[None]:
 
 
 @contextmanager
-def waiting_for_machine_code() -> Iterator[None]:
+def waiting_for_machine_code(purpose: str) -> Iterator[None]:
     """
     Let calls of this thread wait for the compiler within a block, if the mode is ``auto``.
 
     It is for work that would take far longer with interpreted kernels. Other modes stay.
+    ``purpose`` names the work for the log, which says once in a block that the compiler runs.
     """
     with mode_of_thread(Mode.COMPILED if mode() is Mode.AUTO else mode()):
-        yield
+        before, _of_thread.purpose = _of_thread.purpose, purpose
+        try:
+            yield
+        finally:
+            _of_thread.purpose = before
+
+
+def announce_compilation() -> None:
+    """Log that the compiler runs, if this thread waits for it and has not logged that yet."""
+    purpose, _of_thread.purpose = _of_thread.purpose, None
+    if purpose is not None:
+        _log.warning('%s waits for the compiler, once on this machine', purpose)

@@ -4,6 +4,8 @@ The bond: a heartbeat by which Nav2's lifecycle manager sees that a node lives.
 It needs the package ``bondpy``; without it there is no bond.
 """
 
+import threading
+
 from rclpy.duration import Duration
 from rclpy.node import Node
 
@@ -26,9 +28,14 @@ LONGEST_FAREWELL = Duration(seconds=0.2)
 
 
 class NodeBond:
-    """A bond under the name of a node, from construction to ``close``; none without bondpy."""
+    """
+    A bond under the name of a node, from construction to ``close``; none without bondpy.
+
+    ``was_formed`` is set once the other side has confirmed it.
+    """
 
     def __init__(self, node: Node) -> None:
+        self.was_formed = threading.Event()
         if not HAVE_BOND:
             node.get_logger().info(
                 'no bond: the package bondpy is not installed; with the lifecycle manager of '
@@ -36,16 +43,25 @@ class NodeBond:
             )
             return
         self._node = node
-        self._bond = Bond(node, TOPIC, node.get_name())
+        self._bond = Bond(node, TOPIC, node.get_name(), on_formed=self.was_formed.set)
         self._bond.heartbeat_period = HEARTBEAT_PERIOD
         self._bond.heartbeat_timeout = HEARTBEAT_TIMEOUT
         self._bond.start()
 
-    def close(self) -> None:
+    def leave(self) -> None:
         """Break the bond, inform the other side, and wait ``LONGEST_FAREWELL`` at most for it."""
         if HAVE_BOND:
             self._bond.break_bond()
             self._bond.wait_until_broken(LONGEST_FAREWELL)
+
+    def close(self) -> None:
+        """
+        Leave the bond, and end its subscription.
+
+        To be called by a callback of its group, or when no callback runs any more.
+        """
+        if HAVE_BOND:
+            self.leave()
             # ``shutdown`` alone would leave an unusable subscription in the node.
             self._node.destroy_subscription(self._bond.sub)
             self._bond.shutdown()

@@ -39,6 +39,14 @@ class ManagedNode(LifecycleNode):
     def cleanup(self) -> None:
         """Release what ``configure`` acquired: at a cleanup, a shutdown or after a failure."""
 
+    def end_transitions(self) -> None:
+        """
+        End the service ``change_state``, so that nobody asks it for what has no response any more.
+
+        To be called while the node still spins: it answers what has come before.
+        """
+        self.destroy_service(self._change_state)
+
     def destroy_node(self) -> None:
         """Shut the node down from any state, unless it is finalized already, and destroy it."""
         if self.state != 'finalized':
@@ -88,8 +96,8 @@ class ManagedNode(LifecycleNode):
         For a transition that the state does not allow, rclpy's own callback raises, so that its
         caller would wait for ever.
         """
-        service = next(item for item in self.services if item.srv_type is ChangeState)
-        change_state = service.callback
+        self._change_state = next(item for item in self.services if item.srv_type is ChangeState)
+        change_state = self._change_state.callback
 
         def respond(
             request: ChangeState.Request, response: ChangeState.Response
@@ -103,4 +111,4 @@ class ManagedNode(LifecycleNode):
                 response.success = False
                 return response
 
-        service.callback = respond
+        self._change_state.callback = respond

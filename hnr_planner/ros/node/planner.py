@@ -1,6 +1,7 @@
 """The planning node: its topics, services and parameters, connected to the planning server."""
 
 from functools import partial
+import time
 
 from hnr_planner.core import KINODYNAMIC_PLANNERS
 from hnr_planner.ros.interfaces.health import Health
@@ -30,6 +31,9 @@ MOST_SEARCHES = 32
 
 #: Threads for callbacks: four more than searches can take, for ~/cancel, diagnostics and maps.
 THREADS = MOST_SEARCHES + 4
+
+#: Longest time [s] for which the end of the process waits for Nav2's manager to reset the node.
+LONGEST_RESET = 3.0
 
 #: The QoS profile of services: so many requests to one may wait.
 WAITING_REQUESTS = QoSProfile(depth=1000)
@@ -118,9 +122,9 @@ class PlannerNode(ManagedNode):
     def deactivate(self) -> None:
         """End all running searches, refuse requests as NOT_ACTIVE afterwards, and end the bond."""
         self._server.searches.disable()
-        if self._bond is not None:
-            self._bond.close()
-            self._bond = None
+        bond, self._bond = self._bond, None
+        if bond is not None:
+            bond.close()
 
     def cleanup(self) -> None:
         """End the subscriptions to maps and transforms, and forget the map and the last path."""
@@ -130,9 +134,26 @@ class PlannerNode(ManagedNode):
         self._map_input, self._transforms = None, None
         self._server.forget_map()
 
-    def end_searches(self) -> None:
-        """End running searches, and admit no more, before the process ends."""
+    def end(self) -> None:
+        """
+        End running searches, and let go of Nav2's manager, before the process ends.
+
+        Where the bond breaks, the manager asks all its nodes to deactivate and to clean up, and
+        waits for each response without a limit. So these are given until it is done or
+        ``LONGEST_RESET`` has passed, and then the service is gone before the node is.
+        """
         self._server.end()
+        bond = self._bond
+        if bond is not None:
+            bond.leave()
+            deadline = time.monotonic() + LONGEST_RESET
+            while (
+                bond.was_formed.is_set()
+                and self.state not in ('unconfigured', 'finalized')
+                and time.monotonic() < deadline
+            ):
+                time.sleep(0.01)
+        self.end_transitions()
 
     def destroy_node(self) -> None:
         """Publish what still waits to be published, then destroy the node."""

@@ -40,7 +40,7 @@ def main(arguments: Sequence[str] | None = None) -> NoReturn:
         _make_node,
         threads=THREADS,
         prepare=_prepare,
-        before_shutdown=PlannerNode.end_searches,
+        before_shutdown=PlannerNode.end,
     )
     sys.exit(code)
 

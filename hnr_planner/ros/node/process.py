@@ -55,8 +55,8 @@ def run(
     prepare : callable, optional
         Called with the logger before ROS is started; a signal ends the process at once meanwhile.
     before_shutdown : callable, optional
-        Called with the node after a signal or a failed callback: it makes running callbacks end,
-        which are then waited for.
+        Called with the node after a signal or a failed callback, while callbacks still run: it
+        makes those end that have begun, which are then waited for.
 
     """
     give_back_large_blocks()
@@ -120,11 +120,11 @@ def _spin(
     spinning = threading.Thread(target=spin, name='spin', daemon=True)
     spinning.start()
     stop.wait()
+    if before_shutdown is not None:
+        before_shutdown(node)
     ending.set()
     wake_up.trigger()
     spinning.join()
-    if before_shutdown is not None:
-        before_shutdown(node)
     executor.finish()
     for failure in failures:
         traceback.print_exception(failure)

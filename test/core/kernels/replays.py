@@ -24,6 +24,7 @@ from hnr_planner import core
 from hnr_planner.core import GridSpace, plan, Roadmap, sample, WALKS
 from hnr_planner.core.kernels.kernel import interpreted, Kernel
 from hnr_planner.core.planning.registry import ALGORITHMS
+from hnr_planner.core.planning.roadmap.sampled import SampledRoadmap
 from hnr_planner.core.systems import Car, DoubleIntegrator
 from hnr_planner.core.trajectories.plan_trajectory import plan_trajectory
 from hnr_planner.core.trajectories.registry import KINODYNAMIC_PLANNERS
@@ -148,8 +149,15 @@ def plan_paths() -> None:
 
 
 def plan_by_roadmap() -> None:
-    roadmap = Roadmap.build(HALL, seed=1)
-    _plan(HALL, START, GOAL, algorithm=roadmap, seed=0)
+    changed = maps.rooms(24, 24, 8, seed=1)
+    changed[3:5, 3:5] = True
+    space = GridSpace.from_blocked(changed, 0.05, (1.0, 2.0, 0.3))
+    for roadmap in (
+        Roadmap.build(HALL, seed=1),
+        Roadmap.build(HALL, seed=1).update(space),
+        Roadmap(1, SampledRoadmap.build(HALL, 1, None)),
+    ):
+        _plan(roadmap.space, START, GOAL, algorithm=roadmap, seed=0)
 
 
 def plan_motions() -> None:

@@ -131,6 +131,19 @@ say(*names)
     assert names[-2:] == ['halved', 'collatz']
 
 
+def test_work_that_waits_for_the_compiler_says_so_once(start: Start):
+    lines = output(
+        start("""
+        from hnr_planner.core.kernels.modes import waiting_for_machine_code
+        for _ in range(2):
+            with waiting_for_machine_code('the work'):
+                samples.halved(1.0), samples.collatz(27)
+        say(interpreted_calls())
+        """)
+    )
+    assert lines == ['LOG WARNING the work waits for the compiler, once on this machine', '0']
+
+
 # -- the child ends with its parent ---------------------------------------------------------------
 
 

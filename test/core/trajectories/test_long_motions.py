@@ -58,11 +58,11 @@ def test_a_long_motion_is_reduced_to_one_that_a_robot_drives() -> None:
 
 
 def test_a_long_motion_that_cannot_be_shortened_is_refused_unless_it_is_asked_for() -> None:
-    refused = solve(CAR, time_step=5e-4)
+    refused = solve(CAR, time_step=4e-3)
     assert refused.status is PlannerStatus.ITERATION_LIMIT
     assert refused.trajectory is None and len(refused.path) == 0
     assert f'more than the {STEPS_MAX} that a robot would drive' in refused.message
-    raw = solve(CAR, time_step=5e-4, simplify=False)
+    raw = solve(CAR, time_step=4e-3, simplify=False)
     assert raw.status is PlannerStatus.SOLVED
     assert raw.trajectory is not None and len(raw.trajectory.controls) > STEPS_MAX
 

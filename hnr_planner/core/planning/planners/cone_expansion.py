@@ -6,18 +6,18 @@ a bound of the cone is a corner of an obstacle, the shortest path may also bend 
 points beyond the bound.
 """
 
-import math
-
 from hnr_planner.core.kernels.borrowed import borrowed
-from hnr_planner.core.kernels.kernel import kernel
+from hnr_planner.core.kernels.kernel import inlined, kernel
 from hnr_planner.core.planning.planners.cones import (
     add_node,
     add_vertex,
+    AT_ONCE,
     CORNER,
     DISTANCE,
     is_over,
     LEFT_X,
     LEFT_Y,
+    length_of,
     N_NODES,
     N_OPEN,
     N_VERTICES,
@@ -25,6 +25,7 @@ from hnr_planner.core.planning.planners.cones import (
     pop,
     PORTAL,
     push,
+    push_new,
     reach_disc,
     RIGHT_X,
     RIGHT_Y,
@@ -46,40 +47,61 @@ def expand(slabs, frontier, target, n_iterations):
     """
     Expand at most ``n_iterations`` nodes in the order of their estimates; return how many.
 
-    It ends early when the shortest path to ``target`` is found, no node is open, or the arrays of
-    ``frontier`` may have too few rows for the next node.
+    A node with a single successor is replaced by it at once, up to the next node with more: that
+    counts as one expansion. The work ends early when the shortest path to ``target`` is found, no
+    node is open, or the arrays of ``frontier`` may have too few rows for the next node.
     """
     slabs, frontier = borrowed(slabs), borrowed(frontier)
-    sizes, nodes, vertices = frontier.sizes, frontier.nodes, frontier.vertices
+    sizes, vertices = frontier.sizes, frontier.vertices
     for i in range(n_iterations):
         if is_over(frontier):
             return i
-        row = frontier.heap[0]
-        portal, up = int(nodes[row, PORTAL]), int(nodes[row, UP])
-        slab = slabs.portals[portal, 4] if up == 1 else slabs.portals[portal, 3]
-        ahead = slabs.above if up == 1 else slabs.below
-        back = slabs.below if up == 1 else slabs.above
-        needed = 3 * (ahead[slab, 1] - ahead[slab, 0]) + 2 * (back[slab, 1] - back[slab, 0]) + 7
-        if max(sizes[N_NODES], sizes[N_VERTICES], sizes[N_OPEN]) + needed > len(nodes):
+        rows = max(sizes[N_NODES], sizes[N_VERTICES], sizes[N_OPEN]) + sizes[AT_ONCE]
+        if rows > len(frontier.nodes):
             return i
+        row = frontier.heap[0]
         pop(frontier)
-        root = int(nodes[row, ROOT])
+        root = int(frontier.nodes[row, ROOT])
         corner = int(vertices[root, CORNER])
         if corner != NONE and vertices[root, DISTANCE] > frontier.nearest[corner]:
             continue
-        holds = holds_target(slabs, target, slab)
-        if holds:
-            _reach_target(slabs, frontier, target, row, slab)
-        if slab != target.slab:
-            _expand_ahead(slabs, frontier, target, row, ahead[slab, 0], ahead[slab, 1])
-        for side in (LEFT, RIGHT):
-            _expand_around(slabs, frontier, target, row, side, slab, holds)
+        while _replace_node(slabs, frontier, target, row):
+            pass
     is_over(frontier)
     return n_iterations
 
 
-@kernel
-def _expand_ahead(slabs, frontier, target, row, first, last):
+@inlined
+def _replace_node(slabs, frontier, target, row):
+    """
+    Add the successors of node ``row``; return whether there is one only, now in that row.
+
+    Otherwise the successors, and the target where it is reached, are on the heap.
+    """
+    sizes, nodes = frontier.sizes, frontier.nodes
+    first, n_open, n_vertices = sizes[N_NODES], sizes[N_OPEN], sizes[N_VERTICES]
+    portal, up = int(nodes[row, PORTAL]), int(nodes[row, UP])
+    slab = slabs.portals[portal, 4] if up == 1 else slabs.portals[portal, 3]
+    holds = holds_target(slabs, target, slab)
+    if holds:
+        _reach_target(slabs, frontier, target, row, slab)
+    if slab != target.slab:
+        ahead = slabs.above if up == 1 else slabs.below
+        _expand_ahead(slabs, frontier, row, ahead[slab, 0], ahead[slab, 1])
+    for side in (LEFT, RIGHT):
+        _expand_around(slabs, frontier, target, row, side, slab, holds)
+    is_single = sizes[N_NODES] == first + 1
+    if is_single and sizes[N_OPEN] == n_open and sizes[N_VERTICES] == n_vertices:
+        for i in range(nodes.shape[1]):
+            nodes[row, i] = nodes[first, i]
+        sizes[N_NODES] = first
+        return True
+    push_new(slabs, frontier, target, first)
+    return False
+
+
+@inlined
+def _expand_ahead(slabs, frontier, row, first, last):
     """Add nodes for the portals ``first`` to ``last`` - 1 that lie in the cone of node ``row``."""
     nodes, vertices = frontier.nodes, frontier.vertices
     up, root = int(nodes[row, UP]), int(nodes[row, ROOT])
@@ -101,10 +123,10 @@ def _expand_ahead(slabs, frontier, target, row, first, last):
             a, b = left, line
         if up * _side_of(x, y, rx, ry, right, line) >= 0.0:
             c, d = right, line
-        add_node(slabs, frontier, target, root, a, b, c, d, k, up)
+        add_node(slabs, frontier, root, a, b, c, d, k, up)
 
 
-@kernel
+@inlined
 def _expand_around(slabs, frontier, target, row, side, slab, holds):
     """
     Add the nodes, and the target, beyond a bend at the corner on one side of node ``row``.
@@ -126,7 +148,7 @@ def _expand_around(slabs, frontier, target, row, side, slab, holds):
     outwards = up if side == LEFT else -up  # the sign of what lies beyond the bound
     if slab == target.slab:
         if outwards * _side_of(x, y, cx, cy, target.x, target.y) > 0.0:
-            rest = math.hypot(target.x - cx, target.y - cy)
+            rest = length_of(target.x - cx, target.y - cy)
             push(frontier, vertices[vertex, DISTANCE] + rest, NONE - vertex)
         return
     if holds:
@@ -141,9 +163,9 @@ def _expand_around(slabs, frontier, target, row, side, slab, holds):
         if outwards * _side_of(x, y, cx, cy, inner, line) < 0.0:
             ix, iy = 2.0 * cx - x, 2.0 * cy - y
         if side == LEFT:
-            add_node(slabs, frontier, target, vertex, outer, line, ix, iy, k, up)
+            add_node(slabs, frontier, vertex, outer, line, ix, iy, k, up)
         else:
-            add_node(slabs, frontier, target, vertex, ix, iy, outer, line, k, up)
+            add_node(slabs, frontier, vertex, ix, iy, outer, line, k, up)
     back = slabs.below if up == 1 else slabs.above
     for k in range(back[slab, 0], back[slab, 1]):
         left, right = slabs.portals[k, 0], slabs.portals[k, 1]
@@ -152,10 +174,10 @@ def _expand_around(slabs, frontier, target, row, side, slab, holds):
         if (near < cx) if side == LEFT else (near > cx):
             turn = _reach_corner(frontier, vertex, near, cy, 2 * k + near_side)
             if turn != NONE:
-                add_node(slabs, frontier, target, turn, left, cy, right, cy, k, -up)
+                add_node(slabs, frontier, turn, left, cy, right, cy, k, -up)
 
 
-@kernel
+@inlined
 def _reach_target(slabs, frontier, target, row, slab):
     """Push the target on the heap where it lies in the cone of node ``row`` and in ``slab``."""
     nodes, vertices = frontier.nodes, frontier.vertices
@@ -173,11 +195,11 @@ def _reach_target(slabs, frontier, target, row, slab):
     left = up * _side_of(x, y, lx, ly, target.x, target.y)
     right = up * _side_of(x, y, rx, ry, target.x, target.y)
     if left <= 0.0 <= right:
-        rest = math.hypot(target.x - x, target.y - y)
+        rest = length_of(target.x - x, target.y - y)
         push(frontier, vertices[root, DISTANCE] + rest, NONE - root)
 
 
-@kernel
+@inlined
 def _reach_corner(frontier, root, x, y, corner):
     """
     Add the vertex at corner ``corner``, at (x, y), reached from row ``root``; return its row.
@@ -185,14 +207,14 @@ def _reach_corner(frontier, root, x, y, corner):
     Returns NONE (-1) and adds nothing where a path to the corner that is no longer is known.
     """
     vertices = frontier.vertices
-    distance = vertices[root, DISTANCE] + math.hypot(x - vertices[root, X], y - vertices[root, Y])
+    distance = vertices[root, DISTANCE] + length_of(x - vertices[root, X], y - vertices[root, Y])
     if distance >= NEARER * frontier.nearest[corner]:
         return NONE
     frontier.nearest[corner] = distance
     return add_vertex(frontier, x, y, distance, root, corner)
 
 
-@kernel
+@inlined
 def _side_of(ax, ay, bx, by, px, py):
     """Return a number > 0 where ``p`` is left of the line from ``a`` to ``b``, < 0 right of it."""
     return (bx - ax) * (py - ay) - (by - ay) * (px - ax)

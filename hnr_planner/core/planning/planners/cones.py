@@ -17,7 +17,9 @@ import math
 from typing import NamedTuple
 
 from hnr_planner.core.checks import Floats
-from hnr_planner.core.kernels.kernel import kernel
+from hnr_planner.core.kernels.borrowed import borrowed
+from hnr_planner.core.kernels.kernel import inlined, kernel
+from hnr_planner.core.planning.planner import with_capacity
 from hnr_planner.core.planning.planners.target import holds_target, nearest_of_disc, off_line
 from hnr_planner.core.spaces.grid.slabs import slab_at, THROUGH
 import numpy as np
@@ -31,13 +33,16 @@ ROOT, LEFT_X, LEFT_Y, RIGHT_X, RIGHT_Y, PORTAL, UP = range(7)
 #: Columns of a vertex: point, length of the path from the start, row of the vertex before on that
 #: path, number of its corner (2 portal + side).
 X, Y, DISTANCE, PARENT, CORNER = range(5)
-#: Entries of ``Frontier.sizes``: nodes, vertices and open nodes, and the row of the last vertex.
-N_NODES, N_VERTICES, N_OPEN, FINAL = range(4)
+#: Entries of ``Frontier.sizes``: nodes, vertices and open nodes, the row of the last vertex, and
+#: the rows that one expansion may fill.
+N_NODES, N_VERTICES, N_OPEN, FINAL, AT_ONCE = range(5)
 
 
 class Frontier(NamedTuple):
     """
-    State of a search; points and lengths are in the kernel frame, in units of cells.
+    State of a search, in arrays that a later search can use again.
+
+    Points and lengths are in the kernel frame, in units of cells.
 
     Attributes
     ----------
@@ -54,9 +59,9 @@ class Frontier(NamedTuple):
         Length of the shortest path by which each corner has been reached; inf at first.
     is_open : (n_slabs,) bool
         Slabs that a path may pass: all but dead ends that hold neither start nor target.
-    sizes : (4,) int64
-        Numbers of nodes, of vertices and of open nodes, and the row of the last vertex of the
-        shortest path, NONE (-1) while the search is not solved.
+    sizes : (5,) int64
+        Numbers of nodes, of vertices and of open nodes; the row of the last vertex of the shortest
+        path, NONE (-1) while the search is not solved; and the rows that one expansion may fill.
 
     """
 
@@ -69,47 +74,75 @@ class Frontier(NamedTuple):
     sizes: NDArray[np.int64]
 
 
-@kernel
-def open_frontier(slabs, start, target, capacity):
+def empty_frontier(n_portals: int, n_slabs: int, at_once: int, rows: int) -> Frontier:
     """
-    Return the state of a new search from ``start`` (2,) to ``target``, with its first nodes.
+    Return the state of a search that has no nodes yet, with arrays of at least ``rows`` rows.
 
-    The start is a free point, kernel frame. The arrays have ``capacity`` rows.
+    ``at_once`` is the number of rows that one expansion may fill (``rows_at_once``).
     """
-    x, y = start[0], off_line(start[1])
-    frontier = Frontier(
-        np.empty((capacity, 7)),
-        np.empty((capacity, 5)),
-        np.empty(capacity),
-        np.empty(capacity, dtype=np.int64),
-        np.full(2 * len(slabs.portals), np.inf),
-        slabs.exits == THROUGH,
-        np.zeros(4, dtype=np.int64),
+    rows = max(rows, at_once)
+    return Frontier(
+        np.empty((rows, 7)),
+        np.empty((rows, 5)),
+        np.empty(rows),
+        np.empty(rows, dtype=np.int64),
+        np.full(2 * n_portals, np.inf),
+        np.empty(n_slabs, dtype=np.bool_),
+        np.array([0, 0, 0, NONE, at_once]),
     )
-    frontier.sizes[FINAL] = NONE
+
+
+def with_more_rows(frontier: Frontier, rows: int) -> Frontier:
+    """Return ``frontier`` with arrays of at least ``rows`` rows."""
+    return frontier._replace(
+        nodes=with_capacity(frontier.nodes, rows),
+        vertices=with_capacity(frontier.vertices, rows),
+        estimates=with_capacity(frontier.estimates, rows),
+        heap=with_capacity(frontier.heap, rows),
+    )
+
+
+@kernel
+def open_frontier(slabs, frontier, start, target):
+    """
+    Begin a new search from ``start`` (2,) to ``target`` in the arrays of a frontier.
+
+    The start is a free point, kernel frame. What an earlier search has left is cleared.
+    """
+    slabs, frontier = borrowed(slabs), borrowed(frontier)
+    sizes, vertices = frontier.sizes, frontier.vertices
+    for row in range(sizes[N_VERTICES]):
+        if vertices[row, CORNER] != NONE:
+            frontier.nearest[int(vertices[row, CORNER])] = np.inf
+    for slab in range(len(slabs.exits)):
+        frontier.is_open[slab] = slabs.exits[slab] == THROUGH
+    sizes[N_NODES], sizes[N_VERTICES], sizes[N_OPEN], sizes[FINAL] = 0, 0, 0, NONE
+    x, y = start[0], off_line(start[1])
     add_vertex(frontier, x, y, 0.0, NONE, NONE)
     slab = slab_at(slabs, x, y)
     _open_exits(slabs, frontier, slab)
     _open_exits_of_target(slabs, frontier, target)
     if slab == target.slab:
-        push(frontier, math.hypot(target.x - x, target.y - y), NONE)
-        return frontier
+        push(frontier, length_of(target.x - x, target.y - y), NONE)
+        return
     if holds_target(slabs, target, slab):
         reach_disc(slabs, frontier, target, 0, slab, np.empty((0, 4)))
     for up in (1, -1):
         edge = slabs.above if up == 1 else slabs.below
         for k in range(edge[slab, 0], edge[slab, 1]):
             left, right, line = slabs.portals[k, 0], slabs.portals[k, 1], slabs.portals[k, 2]
-            add_node(slabs, frontier, target, 0, left, line, right, line, k, up)
-    return frontier
+            add_node(slabs, frontier, 0, left, line, right, line, k, up)
+    push_new(slabs, frontier, target, 0)
 
 
 @kernel
-def first_capacity(slabs, start):
-    """Return how many rows the arrays of a search from ``start`` (2,) need for its first nodes."""
-    slab = slab_at(slabs, start[0], start[1])
-    above = slabs.above[slab, 1] - slabs.above[slab, 0]
-    return above + slabs.below[slab, 1] - slabs.below[slab, 0] + 3
+def rows_at_once(slabs):
+    """Return the rows that the first nodes of a search, or one expansion, fill at most."""
+    most = 0
+    for slab in range(len(slabs.boxes)):
+        above = slabs.above[slab, 1] - slabs.above[slab, 0]
+        most = max(most, int(above + slabs.below[slab, 1] - slabs.below[slab, 0]))
+    return 3 * most + 7
 
 
 @kernel
@@ -145,11 +178,11 @@ def reach_disc(slabs, frontier, target, root, slab, bounds):
     x, y = frontier.vertices[root, X], frontier.vertices[root, Y]
     px, py = nearest_of_disc(slabs, target, slab, x, y, bounds)
     if not math.isnan(px):
-        length = frontier.vertices[root, DISTANCE] + math.hypot(px - x, py - y)
+        length = frontier.vertices[root, DISTANCE] + length_of(px - x, py - y)
         push(frontier, length, NONE - add_vertex(frontier, px, py, length, root, NONE))
 
 
-@kernel
+@inlined
 def is_over(frontier):
     """
     Return whether the search has ended: the target is first in the heap, or the heap is empty.
@@ -162,7 +195,7 @@ def is_over(frontier):
     return sizes[N_OPEN] == 0 or sizes[FINAL] != NONE
 
 
-@kernel
+@inlined
 def add_vertex(frontier, x, y, distance, parent, corner):
     """Write a vertex in the first free row; return that row."""
     row = frontier.sizes[N_VERTICES]
@@ -173,42 +206,60 @@ def add_vertex(frontier, x, y, distance, parent, corner):
     return row
 
 
-@kernel
-def add_node(slabs, frontier, target, root, lx, ly, rx, ry, portal, up):
+@inlined
+def add_node(slabs, frontier, root, lx, ly, rx, ry, portal, up):
     """
-    Add the node of a root vertex and a cone through a portal, and push it on the heap.
+    Write the node of a root vertex and a cone through a portal in the first free row.
 
     The cone lies between the bounds through (lx, ly) and (rx, ry) and opens up (``up`` = 1) or
-    down (-1). Nothing is added where the slab beyond the portal is not open.
+    down (-1). Nothing is written where the slab beyond the portal is not open. The node is not on
+    the heap yet: see ``push_new``.
     """
-    if not frontier.is_open[slabs.portals[portal, 4] if up == 1 else slabs.portals[portal, 3]]:
-        return
-    row = frontier.sizes[N_NODES]
+    if frontier.is_open[slabs.portals[portal, 4] if up == 1 else slabs.portals[portal, 3]]:
+        node = frontier.nodes[frontier.sizes[N_NODES]]
+        node[ROOT], node[PORTAL], node[UP] = root, portal, up
+        node[LEFT_X], node[LEFT_Y], node[RIGHT_X], node[RIGHT_Y] = lx, ly, rx, ry
+        frontier.sizes[N_NODES] += 1
+
+
+@inlined
+def push_new(slabs, frontier, target, first):
+    """Push the nodes from row ``first`` on on the heap, with their estimates."""
+    for row in range(first, frontier.sizes[N_NODES]):
+        push(frontier, _estimate(slabs, frontier, target, row), row)
+
+
+@inlined
+def _estimate(slabs, frontier, target, row):
+    """Return a lower bound on the length of paths to the target through the cone of a node."""
     node = frontier.nodes[row]
-    node[ROOT], node[PORTAL], node[UP] = root, portal, up
-    node[LEFT_X], node[LEFT_Y], node[RIGHT_X], node[RIGHT_Y] = lx, ly, rx, ry
-    frontier.sizes[N_NODES] += 1
-    vertex, line = frontier.vertices[root], float(slabs.portals[portal, 2])
-    x, y = vertex[X], vertex[Y]
-    left = max(_crossing(x, y, lx, ly, line), float(slabs.portals[portal, 0]))
-    right = min(_crossing(x, y, rx, ry, line), float(slabs.portals[portal, 1]))
-    goal_y = target.y if up * (target.y - line) > 0.0 else 2.0 * line - target.y
+    vertex, portal = frontier.vertices[int(node[ROOT])], slabs.portals[int(node[PORTAL])]
+    x, y, line = vertex[X], vertex[Y], float(portal[2])
+    left = max(_crossing(x, y, node[LEFT_X], node[LEFT_Y], line), float(portal[0]))
+    right = min(_crossing(x, y, node[RIGHT_X], node[RIGHT_Y], line), float(portal[1]))
+    goal_y = target.y if node[UP] * (target.y - line) > 0.0 else 2.0 * line - target.y
     at = _crossing(x, y, target.x, goal_y, line) if y != line else x
     at = min(max(at, left), right)
-    rest = math.hypot(at - x, line - y) + math.hypot(target.x - at, goal_y - line)
+    rest = length_of(at - x, line - y) + length_of(target.x - at, goal_y - line)
     if target.radius > 0.0:
         near = min(max(x, left), right)
-        rest = max(rest - target.radius, math.hypot(near - x, line - y))
-    push(frontier, vertex[DISTANCE] + rest, row)
+        rest = max(rest - target.radius, length_of(near - x, line - y))
+    return vertex[DISTANCE] + rest
 
 
-@kernel
+@inlined
+def length_of(x, y):
+    """Return the length of the vector (x, y), whose square is no overflow."""
+    return math.sqrt(x * x + y * y)
+
+
+@inlined
 def _crossing(x, y, bx, by, line):
     """Return the x at which the ray from (x, y) through (bx, by) meets the height ``line``."""
     return float(bx) if by == line else x + (bx - x) * (line - y) / (by - y)
 
 
-@kernel
+@inlined
 def push(frontier, estimate, row):
     """Insert a row in the heap of open nodes, ordered by ``estimate``."""
     estimates, heap = frontier.estimates, frontier.heap
@@ -220,7 +271,7 @@ def push(frontier, estimate, row):
     estimates[k], heap[k] = estimate, row
 
 
-@kernel
+@inlined
 def pop(frontier):
     """Remove the entry of the least estimate from the heap of open nodes."""
     estimates, heap, sizes = frontier.estimates, frontier.heap, frontier.sizes

@@ -8,8 +8,7 @@ and the least estimate of an open cone is a lower bound on the length of that pa
 Source: Cui, Harabor and Grastien, "Compromise-free pathfinding on a navigation mesh", IJCAI 2017,
 here on the slabs of a grid.
 
-Free space is open, so the shortest path is a limit: its bends are corners of obstacles. The path
-that is returned passes each corner at the space's margin. With a goal region it ends at the point
+With a goal region it ends at the point
 of the region that is the nearest to the start along free paths; points of the region that are
 nearer than the margin to an obstacle may be left out.
 """
@@ -20,17 +19,14 @@ from typing import ClassVar
 
 from hnr_planner.core.checks import Floats
 from hnr_planner.core.errors import RequestError
-from hnr_planner.core.kernels.copies import copy_into
-from hnr_planner.core.kernels.kernel import kernel
 from hnr_planner.core.kernels.streams import Stream
-from hnr_planner.core.lengths import distance
-from hnr_planner.core.planning.planner import Problem, with_capacity
+from hnr_planner.core.planning.planner import Problem
 from hnr_planner.core.planning.planners.cone_expansion import expand
 from hnr_planner.core.planning.planners.cones import (
     CORNER,
     DISTANCE,
+    empty_frontier,
     FINAL,
-    first_capacity,
     Frontier,
     N_NODES,
     N_OPEN,
@@ -38,19 +34,18 @@ from hnr_planner.core.planning.planners.cones import (
     NONE,
     open_frontier,
     PARENT,
+    rows_at_once,
+    with_more_rows,
 )
 from hnr_planner.core.planning.planners.target import make_target, Target
+from hnr_planner.core.planning.planners.taut_path import taut_path
 from hnr_planner.core.spaces.grid.grid_space import GridSpace
-from hnr_planner.core.spaces.primitives import first_exit
 from hnr_planner.core.spaces.space import Space
-from hnr_planner.core.trees import rows_to
 import numpy as np
 from numpy.typing import NDArray
 
 #: Number of search nodes that fit in the arrays at first.
 INITIAL_CAPACITY = 4096
-#: Rows of the array of the result for each vertex of a path that is moved off corners.
-GRAZED_MAX = 64
 
 
 @dataclass(frozen=True)
@@ -92,7 +87,7 @@ class PolyanyaInGrid(Polyanya):
 @dataclass
 class PolyanyaSearch:
     """
-    A running search of Polyanya; a transition is the expansion of one cone.
+    A running search of Polyanya; a transition is one expansion of a cone (``expand``).
 
     ``samples`` are the start, the corners at which shortest paths from the start bend, and points
     of a goal region that such paths reach. The slabs and the first cones are made by the first
@@ -108,7 +103,9 @@ class PolyanyaSearch:
     _target: Target | None = field(init=False, default=None)
 
     def __post_init__(self) -> None:
-        self._frontier = _frontier_at(self.problem.start)
+        self._frontier = empty_frontier(0, 0, 1, 1)
+        self._frontier.vertices[0] = *self.problem.start, 0.0, NONE, NONE
+        self._frontier.sizes[N_VERTICES] = 1
 
     @property
     def solved(self) -> bool:
@@ -164,11 +161,7 @@ class PolyanyaSearch:
     @property
     def path(self) -> Floats:
         """Path (m, 2) of a solved search, kernel frame, at the margin from the corners passed."""
-        problem = self.problem
-        points = self.samples[rows_to(self.parents, int(self._frontier.sizes[FINAL]))]
-        if problem.goal_radius == 0.0:
-            points = np.vstack([points, problem.goal])
-        return step_aside(problem.space, points, problem.margin)
+        return taut_path(self.problem, self.space.slabs, self._frontier)
 
     def advance(self, n_iterations: int) -> None:
         """Expand at most ``n_iterations`` cones, fewer once solved or when no cone is left."""
@@ -181,84 +174,14 @@ class PolyanyaSearch:
             exhausted = self._frontier.sizes[N_OPEN] == 0
             if self.solved or exhausted or self.iterations == end:
                 break
-            self._grow()
+            self._frontier = with_more_rows(self._frontier, len(self._frontier.nodes) + 1)
 
     def _open(self) -> Target:
         """Make the first cones; return the target of the search."""
         slabs, problem = self.space.slabs, self.problem
         target = make_target(slabs, problem.goal, problem.goal_radius, problem.margin)
-        capacity = max(INITIAL_CAPACITY, first_capacity(slabs, problem.start))
-        self._frontier = open_frontier(slabs, problem.start, target, capacity)
+        sizes = len(slabs.portals), len(slabs.boxes), rows_at_once(slabs)
+        frontier = empty_frontier(*sizes, INITIAL_CAPACITY)
+        open_frontier(slabs, frontier, problem.start, target)
+        self._frontier = frontier  # only now: a limit may interrupt the lines above
         return target
-
-    def _grow(self) -> None:
-        frontier = self._frontier
-        rows = len(frontier.nodes) + 1
-        self._frontier = frontier._replace(
-            nodes=with_capacity(frontier.nodes, rows),
-            vertices=with_capacity(frontier.vertices, rows),
-            estimates=with_capacity(frontier.estimates, rows),
-            heap=with_capacity(frontier.heap, rows),
-        )
-
-
-def _frontier_at(start: Floats) -> Frontier:
-    """Return the state of a search that has no cones yet, only the start (2,) as its vertex."""
-    vertex = np.array([[*start, 0.0, NONE, NONE]])
-    nodes, nothing, rows = np.empty((0, 7)), np.empty(0), np.empty(0, dtype=np.int64)
-    sizes = np.array([0, 1, 0, NONE])
-    return Frontier(nodes, vertex, nothing, rows, nothing, np.empty(0, dtype=np.bool_), sizes)
-
-
-@kernel
-def step_aside(space, points, margin):
-    """
-    Return a free path (k, 2) along ``points`` (m, 2) that passes every corner at the margin.
-
-    A segment between two points is blocked only where it grazes a corner, possibly because its
-    ends were moved off their corners. Then the path gets another vertex at the margin from the
-    corner that is grazed.
-    """
-    aside = np.empty((GRAZED_MAX * len(points), 2))
-    copy_into(aside[0], points[0])
-    n, k = 1, 1
-    pending = np.empty((GRAZED_MAX * len(points), 2))
-    n_pending = 0
-    while k < len(points) or n_pending > 0:
-        end = pending[n_pending - 1] if n_pending > 0 else points[k]
-        a = aside[n - 1]
-        u = end - a
-        t = first_exit(space, a, u, 0.0, 1.0) if u.any() else 2.0
-        if t <= 1.0 and n + n_pending + 2 < len(aside):
-            corner = np.round(a + t * u)
-            step = _step_from(space.free_distance, int(corner[0]), int(corner[1]))
-            bend = corner + margin * step
-            if step.any() and distance(bend, a) > 0.0 and distance(bend, end) > 0.0:
-                copy_into(pending[n_pending], bend)
-                n_pending += 1
-                continue
-        copy_into(aside[n], end)
-        n += 1
-        if n_pending > 0:
-            n_pending -= 1
-        else:
-            k += 1
-    return aside[:n].copy()
-
-
-@kernel
-def _step_from(free_distance, x, y):
-    """
-    Return the direction (2,), entries +1 or -1, away from the one blocked cell at a corner.
-
-    It is (0, 0) where not exactly one of the four cells at the grid point (x, y) is blocked.
-    """
-    step, n_blocked = np.zeros(2), 0
-    for row, up in ((y - 1, 1.0), (y, -1.0)):
-        for column, right in ((x - 1, 1.0), (x, -1.0)):
-            if free_distance[row, column] == 0:
-                step[0], step[1] = right, up
-                n_blocked += 1
-    if n_blocked != 1:
-        step[0], step[1] = 0.0, 0.0
-    return step

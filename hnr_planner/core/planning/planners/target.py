@@ -64,7 +64,7 @@ def off_line(y):
     return y + OFF_LINE if y == math.floor(y) else y
 
 
-@kernel
+@inlined
 def holds_target(slabs, target, slab):
     """Return whether a slab holds the target, or a point of it."""
     if target.radius == 0.0:

@@ -1,34 +1,25 @@
 """
-Roadmaps: the shortest paths between the corners of a map, for many requests.
+Roadmaps: shortest paths between the corners of a map, computed once for many requests.
 
-Short paths bend at the corners of obstacles, so these are the nodes, and a table holds the
-shortest paths between all of them. A request only connects its ends: the nodes to try are the
-*exits* of the Hit-and-Run draws near start and goal, and of all pairs of visible exits the one
-with the shortest path is taken.
+There are two kinds: exact ones on grids (``grid``), and in other spaces of the plane those from
+samples (``sampled``).
 """
 
 from dataclasses import dataclass
-import math
 from typing import ClassVar
 
 from hnr_planner.core.cancellation import Event
-from hnr_planner.core.checks import check_seed, Floats
+from hnr_planner.core.checks import check_points, check_seed, Floats
 from hnr_planner.core.errors import RequestError
-from hnr_planner.core.kernels.borrowed import borrowed
-from hnr_planner.core.kernels.copies import copy_rows
-from hnr_planner.core.kernels.kernel import kernel
 from hnr_planner.core.kernels.modes import waiting_for_machine_code
 from hnr_planner.core.kernels.streams import Stream
 from hnr_planner.core.planning.planner import PathSearch, Problem
-from hnr_planner.core.planning.planners.auto import Auto
-from hnr_planner.core.planning.roadmap.build import build_data, N_DRAWS
-from hnr_planner.core.planning.roadmap.data import empty_roadmap, RoadmapData
-from hnr_planner.core.planning.roadmap.exits import visible_nodes, walk_to_node
-from hnr_planner.core.spaces.primitives import segment_is_free
+from hnr_planner.core.planning.roadmap.grid.grid_roadmap import GridRoadmap
+from hnr_planner.core.planning.roadmap.sampled import SampledRoadmap
+from hnr_planner.core.spaces.grid.grid_space import GridSpace
 from hnr_planner.core.spaces.space import Space
-from hnr_planner.core.trees import branch, NONE
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -36,19 +27,22 @@ class Roadmap:
     """
     A planner with the shortest paths of its space computed in advance: ``Roadmap.build``.
 
+    On a ``GridSpace`` its paths are the shortest, and results say so: ``PlanResult.lower_bound``
+    is their length, up to margins at corners. In other spaces of the plane they are hardly longer
+    than the shortest.
+
     It is immutable: ``update`` and ``grow`` return new roadmaps. A result is a pure function of
-    the roadmap, the request and its seed; the seed matters only where the roadmap does not connect
-    nodes visible from start and goal.
+    the roadmap, the request and its seed; the seed matters only where the roadmap cannot answer.
 
     Attributes
     ----------
     seed : int
-        The seed that reproduces the roadmap.
+        The seed that reproduces the roadmap; it has no effect on a grid.
 
     """
 
     seed: int
-    _data: RoadmapData
+    _kind: GridRoadmap | SampledRoadmap
 
     name: ClassVar[str] = 'roadmap'
 
@@ -59,8 +53,9 @@ class Roadmap:
         """
         Build the roadmap of a space.
 
-        It takes seconds: the work is bounded by counts, whatever the size of the map. The first
-        call for a kind of space waits for the compiler as well; interpreted it would take minutes.
+        On a grid it takes some milliseconds for each thousand corners of obstacles; in another
+        space seconds, since the work is bounded by counts. The first call for a kind of space
+        waits for the compiler as well, and logs that it does.
 
         Parameters
         ----------
@@ -79,16 +74,18 @@ class Roadmap:
             When the space is not of the plane, or the seed no whole number of at least 0.
 
         """
-        _check_plane(space)
         seed = check_seed(seed)
-        with waiting_for_machine_code():
-            return cls(seed, build_data(empty_roadmap(space), space, N_DRAWS, seed, cancel))
+        with waiting_for_machine_code('a roadmap'):
+            if isinstance(space, GridSpace):
+                return cls(seed, GridRoadmap.build(space, cancel))
+            return cls(seed, SampledRoadmap.build(space, seed, cancel))
 
     def update(self, space: Space, *, cancel: Event | None = None) -> 'Roadmap':
         """
-        Return a roadmap of ``space``: the data of this roadmap, repaired where the spaces differ.
+        Return a roadmap of ``space``: that of this roadmap, repaired where the spaces differ.
 
-        Where ``space`` is of another kind or has another frame, its roadmap is built from nothing.
+        Where the spaces are of different kinds, grids of different shapes, or other spaces in
+        different frames, it is built from nothing.
 
         Raises
         ------
@@ -96,15 +93,17 @@ class Roadmap:
             When ``cancel`` was set.
 
         """
-        if not _same_frame(self.space, space):
+        with waiting_for_machine_code('a roadmap'):
+            kind = self._kind.repaired(space, self.seed, cancel)
+        if kind is None:
             return Roadmap.build(space, seed=self.seed, cancel=cancel)
-        with waiting_for_machine_code():
-            data = build_data(self._data, space, self._data.n_draws, self.seed, cancel)
-        return Roadmap(self.seed, data)
+        return Roadmap(self.seed, kind)
 
     def grow(self, *, cancel: Event | None = None) -> 'Roadmap':
         """
-        Return a roadmap of the same space from twice as many draws, for shorter paths.
+        Return a roadmap of the same space with shorter paths, from twice as many draws.
+
+        On a grid the paths are the shortest already, and it is this roadmap.
 
         Raises
         ------
@@ -112,130 +111,79 @@ class Roadmap:
             When ``cancel`` was set.
 
         """
-        with waiting_for_machine_code():
-            data = build_data(self._data, self.space, 2 * self._data.n_draws, self.seed, cancel)
-        return Roadmap(self.seed, data)
+        with waiting_for_machine_code('a roadmap'):
+            kind = self._kind.grown(self.seed, cancel)
+        return self if kind is self._kind else Roadmap(self.seed, kind)
 
     @property
     def space(self) -> Space:
         """The space of the roadmap; the space of a request has to be this very object."""
-        return self._data.space
+        return self._kind.space
 
     @property
     def nodes(self) -> Floats:
         """Nodes (n, dim): corners of obstacles, moved a little into free space, caller's frame."""
-        return self.space.from_kernel(self._data.nodes)
+        return self.space.from_kernel(self._kind.nodes)
 
-    def start(self, problem: Problem, rng: Stream) -> PathSearch:
+    @property
+    def nbytes(self) -> int:
+        """Memory of the roadmap [bytes], without that of its space."""
+        return _n_bytes(self._kind.arrays)
+
+    def __repr__(self) -> str:
+        """Return the space, the number of nodes and the memory."""
+        return (
+            f'Roadmap({self.space!r}, nodes={len(self._kind.nodes)}, '
+            f'megabytes={self.nbytes / 1e6:.2g})'
+        )
+
+    def distances(self, starts: ArrayLike, goals: ArrayLike) -> Floats:
         """
-        Return a solved search, or an ``Auto`` search where the roadmap does not connect the ends.
+        Return the lengths (k,) [m] of the shortest paths for many requests in one call, on a grid.
+
+        Parameters
+        ----------
+        starts, goals : (k, 2)
+            Ends of the requests in the map frame [m].
+
+        Returns
+        -------
+        (k,)
+            Lengths as ``PlanResult.lower_bound`` gives them; inf where no path exists or an end is
+            not free.
 
         Raises
         ------
         RequestError
-            When the request is for another space.
+            When the roadmap is not of a grid, or starts and goals have not the same shape (k, 2).
 
         """
-        if problem.space is not self.space.data:
+        if not isinstance(self._kind, GridRoadmap):
+            raise RequestError(
+                f'distances are exact on a GridSpace only, this roadmap is of a '
+                f'{type(self.space).__name__}'
+            )
+        starts, goals = check_points('starts', starts, 2), check_points('goals', goals, 2)
+        if starts.ndim != 2 or starts.shape != goals.shape:
+            raise RequestError(
+                f'starts and goals must have the same shape (k, 2), got {starts.shape} and '
+                f'{goals.shape}'
+            )
+        return self._kind.distances(starts, goals)
+
+    def for_space(self, space: Space) -> 'Roadmap':
+        """Return the roadmap, or raise RequestError where it is not that of ``space``."""
+        if space is not self.space:
             raise RequestError('the roadmap is of another space: call its update(space) first')
-        nodes, paths, exits = self._data.nodes, self._data.shortest_paths, self._data.exits
-        space, ends = problem.space, (problem.start[np.newaxis], problem.goal[np.newaxis])
-        path, taut = shortest_path(space, nodes, paths, exits, *ends), True
-        if len(path) == 0:
-            ahead, back = (walk_to_node(space, nodes, exits, end[0], rng) for end in ends)
-            path = shortest_path(space, nodes, paths, exits, ahead, back)
-            taut = False
-        return SolvedSearch(path, taut) if len(path) else Auto().start(problem, rng)
+        return self
+
+    def start(self, problem: Problem, rng: Stream) -> PathSearch:
+        """Return a solved search, or one of ``Auto`` where the roadmap connects no ends."""
+        return self._kind.start(problem, rng)
 
 
-@dataclass
-class SolvedSearch:
-    """
-    A search solved by the roadmap, without a transition.
-
-    Attributes
-    ----------
-    path : (m, dim)
-        Path from start to goal, kernel frame.
-    taut : bool
-        Whether the path is taut already, so that it is not shortened.
-
-    """
-
-    path: Floats
-    taut: bool
-    iterations: ClassVar[int] = 0
-    solved: ClassVar[bool] = True
-
-    @property
-    def samples(self) -> Floats:
-        """Vertices (m, dim) of the path, kernel frame."""
-        return self.path
-
-    @property
-    def parents(self) -> NDArray[np.int64]:
-        """Index (m,) of the vertex before each vertex of the path; -1 for the start."""
-        return np.arange(-1, len(self.path) - 1)
-
-    @property
-    def counts(self) -> dict[str, int]:
-        """Further counts by name: an empty dict, since a roadmap has none."""
-        return {}
-
-    def advance(self, n_iterations: int) -> None:
-        """Do nothing: the search is solved."""
-
-
-def _check_plane(space: Space) -> None:
-    """
-    Raise RequestError for a space that has not dimension 2.
-
-    In more dimensions shortest paths bend anywhere along edges of obstacles, not at corners.
-    """
-    if space.dim != 2:
-        raise RequestError(
-            f'a roadmap is of the corners of a plane: space must have dimension 2, this '
-            f'{type(space).__name__} has {space.dim}'
-        )
-
-
-def _same_frame(a: Space, b: Space) -> bool:
-    """Return whether points have the same numbers in the kernel frames of both spaces."""
-    if type(a.data) is not type(b.data) or not np.array_equal(a.kernel_bounds, b.kernel_bounds):
-        return False
-    bounds = np.stack([*a.bounds, *b.bounds])
-    return np.array_equal(a.to_kernel(bounds), b.to_kernel(bounds))
-
-
-@kernel
-def shortest_path(space, nodes, paths, exits, ahead, back):
-    """
-    Return the shortest path (m, dim) over nodes that joins two walks; (0, dim) if there is none.
-
-    The walks (k, dim), ``ahead`` and ``back``, begin at the start and at the goal. The path
-    follows both and connects their last points over nodes visible from these points.
-    """
-    space, nodes, paths, exits = borrowed(space), borrowed(nodes), borrowed(paths), borrowed(exits)
-    leaving, before = visible_nodes(space, nodes, exits, ahead[-1], True)
-    arriving, after = visible_nodes(space, nodes, exits, back[-1], False)
-    shortest, first, last = math.inf, NONE, NONE
-    for i in range(len(leaving)):
-        for j in range(len(arriving)):
-            length = before[i] + paths.distance[leaving[i], arriving[j]] + after[j]
-            if length < shortest:
-                shortest, first, last = length, leaving[i], arriving[j]
-    if first == NONE:
-        return np.empty((0, nodes.shape[1]))
-    # Later nodes of the path may be visible too: leave out those before.
-    while first != last and segment_is_free(space, ahead[-1], nodes[paths.previous[last, first]]):
-        first = paths.previous[last, first]
-    while first != last and segment_is_free(space, nodes[paths.previous[first, last]], back[-1]):
-        last = paths.previous[first, last]
-    between = branch(nodes, paths.previous[first], last)
-    left = len(ahead)
-    arrived = left + len(between)
-    path = np.empty((arrived + len(back), nodes.shape[1]))
-    copy_rows(path[:left], ahead)
-    copy_rows(path[left:arrived], between)
-    copy_rows(path[arrived:], back[::-1])
-    return path
+def _n_bytes(arrays: object) -> int:
+    """Return the memory [bytes] of all arrays in tuples of any depth."""
+    if isinstance(arrays, tuple):
+        return sum(map(_n_bytes, arrays))
+    return arrays.nbytes if isinstance(arrays, np.ndarray) else 0

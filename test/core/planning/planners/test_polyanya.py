@@ -1,15 +1,19 @@
 """Polyanya finds the shortest path, by an independent solver in whole numbers."""
 
 import math
+import os
+from pathlib import Path
 from test.brute_force import path_collisions
 from test.visibility_graph import SCALE, shortest_length
 import threading
 
 from hnr_planner.core import BoxSpace, GridSpace, plan, PlannerStatus, RequestError
+from hnr_planner.maps import load_map
 import numpy as np
 import pytest
 
 SEEDS = range(40)
+SCENARIO = Path(os.environ.get('HNR_MAPS', '/nonexistent')) / 'Denver_1_256.map.scen'
 #: What margins at corners add to a length at most [cells].
 MARGINS = 1e-6
 
@@ -46,6 +50,22 @@ def test_no_path_is_shorter(seed: int):
         assert result.length == pytest.approx(expected, abs=MARGINS), (blocked, start, goal)
         if result.status is PlannerStatus.SOLVED:
             assert path_collisions(result.path, blocked, 1.0) == []
+
+
+@pytest.mark.skipif(not SCENARIO.exists(), reason=f'HNR_MAPS has no {SCENARIO.name}')
+def test_a_scenario_of_moving_ai_has_shortest_paths():
+    """Every 60th request, from cell centre to cell centre, and no path longer than the octile."""
+    blocked = load_map(SCENARIO.with_suffix('')).data >= 65
+    space = GridSpace.from_blocked(blocked)
+    for line in SCENARIO.read_text().splitlines()[1::60]:
+        *ends, octile = map(float, line.split()[4:9])
+        start, goal = (ends[0] + 0.5, ends[1] + 0.5), (ends[2] + 0.5, ends[3] + 0.5)
+        result = exact(space, start, goal)
+        inside = (tuple(int(SCALE * x) for x in point) for point in (start, goal))
+        expected = shortest_length(blocked, *inside)
+        assert result.length == pytest.approx(expected, abs=MARGINS)
+        assert result.length <= octile + MARGINS
+        assert path_collisions(result.path, blocked, 1.0) == []
 
 
 def test_the_solver_detects_a_path_that_is_too_long():

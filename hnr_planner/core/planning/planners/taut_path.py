@@ -1,0 +1,93 @@
+"""
+The path of a solved search of ``polyanya``, moved off the corners at which it bends.
+
+Free space is open, so the shortest path is a limit: its bends are corners of obstacles. The free
+path beside it passes each corner at the margin.
+"""
+
+from hnr_planner.core.kernels.copies import copy_into
+from hnr_planner.core.kernels.kernel import kernel
+from hnr_planner.core.lengths import distance
+from hnr_planner.core.planning.planners.cones import CORNER, FINAL, NONE, PARENT, X, Y
+from hnr_planner.core.spaces.primitives import first_exit
+import numpy as np
+
+#: Rows of the array of the result for each vertex of a path that is moved off corners.
+GRAZED_MAX = 64
+
+
+@kernel
+def taut_path(problem, slabs, frontier):
+    """Return the path (m, 2) of a solved search, kernel frame, at the margin from its corners."""
+    vertices, last = frontier.vertices, int(frontier.sizes[FINAL])
+    n, row = 0, last
+    while row != NONE:
+        n, row = n + 1, int(vertices[row, PARENT])
+    has_goal = problem.goal_radius == 0.0
+    points = np.empty((n + 1 if has_goal else n, 2))
+    row = last
+    for k in range(n - 1, 0, -1):
+        corner = int(vertices[row, CORNER])
+        points[k, 0], points[k, 1] = vertices[row, X], vertices[row, Y]
+        if corner != NONE:
+            points[k, 0] += problem.margin * slabs.steps[corner // 2, corner % 2, 0]
+            points[k, 1] += problem.margin * slabs.steps[corner // 2, corner % 2, 1]
+        row = int(vertices[row, PARENT])
+    copy_into(points[0], problem.start)
+    if has_goal:
+        copy_into(points[n], problem.goal)
+    return step_aside(problem.space, points, problem.margin)
+
+
+@kernel
+def step_aside(space, points, margin):
+    """
+    Return a free path (k, 2) along ``points`` (m, 2) that passes every corner at the margin.
+
+    A segment between two points is blocked only where it grazes a corner, possibly because its
+    ends were moved off their corners. Then the path gets another vertex at the margin from the
+    corner that is grazed.
+    """
+    aside = np.empty((GRAZED_MAX * len(points), 2))
+    copy_into(aside[0], points[0])
+    n, k = 1, 1
+    pending = np.empty((GRAZED_MAX * len(points), 2))
+    n_pending = 0
+    while k < len(points) or n_pending > 0:
+        end = pending[n_pending - 1] if n_pending > 0 else points[k]
+        a = aside[n - 1]
+        u = end - a
+        t = first_exit(space, a, u, 0.0, 1.0) if u.any() else 2.0
+        if t <= 1.0 and n + n_pending + 2 < len(aside):
+            corner = np.round(a + t * u)
+            step = _step_from(space.free_distance, int(corner[0]), int(corner[1]))
+            bend = corner + margin * step
+            if step.any() and distance(bend, a) > 0.0 and distance(bend, end) > 0.0:
+                copy_into(pending[n_pending], bend)
+                n_pending += 1
+                continue
+        copy_into(aside[n], end)
+        n += 1
+        if n_pending > 0:
+            n_pending -= 1
+        else:
+            k += 1
+    return aside[:n].copy()
+
+
+@kernel
+def _step_from(free_distance, x, y):
+    """
+    Return the direction (2,), entries +1 or -1, away from the one blocked cell at a corner.
+
+    It is (0, 0) where not exactly one of the four cells at the grid point (x, y) is blocked.
+    """
+    step, n_blocked = np.zeros(2), 0
+    for row, up in ((y - 1, 1.0), (y, -1.0)):
+        for column, right in ((x - 1, 1.0), (x, -1.0)):
+            if free_distance[row, column] == 0:
+                step[0], step[1] = right, up
+                n_blocked += 1
+    if n_blocked != 1:
+        step[0], step[1] = 0.0, 0.0
+    return step
