@@ -24,6 +24,7 @@ PRINTS = {
     'exact_and_certified': r'found 4\d\.\d+ m, no path is shorter than 42\.\d+ m',
     'plan_on_a_map': r'SOLVED',
     'points_of_a_polytope': r'converged',
+    'roadmap': r'Roadmap\(',
     'robot_with_inertia': r'SOLVED',
     'stuck_chain': r'not converged',
 }
