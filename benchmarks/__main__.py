@@ -16,6 +16,7 @@ from benchmarks.answers import answers
 from benchmarks.clearance import clearance
 from benchmarks.competitors import Competitor, lineup
 from benchmarks.every_problem import every_problem
+from benchmarks.exact import exact
 from benchmarks.first_path import first_path
 from benchmarks.interpreted import interpreted
 from benchmarks.kinodynamic import kinodynamic
@@ -41,6 +42,7 @@ SECTIONS: tuple[SectionOf, ...] = (
     first_path,
     short_path,
     success,
+    exact,
     roadmap,
     sampling,
     clearance,

@@ -30,6 +30,7 @@ def ours() -> list[Competitor]:
     return [
         *first,
         Competitor('auto + simplify', 'ours', 'short', _plan(algorithm='auto'), runs_least=100),
+        Competitor('polyanya', 'ours', 'short', _plan(algorithm='polyanya'), runs_least=100),
         Competitor('auto, optimized', 'ours', 'short', _optimized, _optimized_for, runs_least=100),
     ]
 

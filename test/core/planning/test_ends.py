@@ -30,6 +30,19 @@ def ask(space: GridSpace, start: Any, goal: Any = (0.5, 1.5), **given: Any) -> P
     return plan(space, start, goal, **{'seed': 1, 'time_limit': math.inf, **given})
 
 
+@pytest.mark.parametrize(
+    ('start', 'goal'),
+    [(NEAR_WALL, (3.5, 0.5)), ((0.5, 0.5), (2.15, 0.5)), (NEAR_WALL, (2.15, 0.5))],
+)
+def test_a_path_with_moved_ends_is_proved_the_shortest_for_them(start: Any, goal: Any):
+    moves = {'start_escape': 0.5, 'goal_tolerance': 0.5, 'optimize_iterations': 1}
+    result = ask(grid(rooms(), 0.2), start, goal, **moves)
+    assert result.status is PlannerStatus.SOLVED
+    assert result.escape + result.goal_offset > 0.0 and len(result.path) > 3
+    assert result.lower_bound == pytest.approx(result.length, abs=1e-6)
+    assert ', the shortest; the ' in result.message
+
+
 # -- the goal ------------------------------------------------------------------------------------
 
 

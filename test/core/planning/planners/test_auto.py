@@ -121,6 +121,24 @@ def test_optimized_it_is_the_shortest_and_says_so():
     assert len(result.samples) > 2  # those of the first search
 
 
+def test_the_shortest_path_to_a_region_is_proved_too():
+    space, request = GridSpace.from_blocked(island(4)), ((2.0, 6.0), (10.0, 6.5))
+    result = solve(space, *request, goal_radius=1.0, optimize_iterations=1)
+    exact = solve(space, *request, goal_radius=1.0, algorithm='polyanya')
+    assert result.message.endswith(', the shortest')
+    assert result.length == exact.length == pytest.approx(result.lower_bound, abs=1e-6)
+    assert math.dist(result.path[-1], (10.0, 6.5)) <= 1.0
+
+
+def test_the_work_of_the_exact_search_is_counted():
+    space, request = GridSpace.from_blocked(island(4)), ((2.0, 6.0), (10.0, 6.5))
+    first = solve(space, *request, seed=1)
+    exact = solve(space, *request, algorithm='polyanya')
+    both = solve(space, *request, seed=1, optimize_iterations=1)
+    assert both.iterations == first.iterations + exact.iterations
+    assert both.counts['cones'] == exact.counts['cones'] > 0
+
+
 @pytest.mark.parametrize('seed', range(5))
 def test_no_path_is_shorter_than_its_lower_bound(seed: int):
     rng = np.random.default_rng(seed)
