@@ -28,6 +28,8 @@ from hnr_planner.core.planning.attempts import (
 from hnr_planner.core.planning.ends import Allowance, check_allowance, move_ends, MovedRequest
 from hnr_planner.core.planning.limits import Budget
 from hnr_planner.core.planning.planner import Planner
+from hnr_planner.core.planning.poses.plan_poses import plan_poses
+from hnr_planner.core.planning.poses.request import refuse_options
 from hnr_planner.core.planning.request import (
     check_effort,
     check_request,
@@ -36,6 +38,7 @@ from hnr_planner.core.planning.request import (
 )
 from hnr_planner.core.planning.result import FirstSolution, PlannerStatus, PlanResult
 from hnr_planner.core.planning.tiers import with_remark
+from hnr_planner.core.spaces.poses.pose_space import PoseSpace
 from hnr_planner.core.spaces.space import Space
 import numpy as np
 from numpy.typing import ArrayLike
@@ -115,7 +118,9 @@ def plan(
     cancel : threading.Event, optional
         Event that ends the call once the event is set.
     **settings
-        Settings of the planner that ``algorithm`` names.
+        Settings of the planner that ``algorithm`` names. In a ``PoseSpace``: ``heading_tolerance``
+        [rad], 0 by default, by which the path's end may be turned from the goal, and
+        ``reverse_penalty``, at least 1, a factor on the length driven backwards, 2 by default.
 
     Returns
     -------
@@ -136,6 +141,24 @@ def plan(
         optimize_iterations=optimize_iterations,
         cancel=cancel,
     )
+    if isinstance(space, PoseSpace):
+        refuse_options(
+            clearance=(clearance, 0.0),
+            alternatives=(alternatives, 1),
+            goal_tolerance=(goal_tolerance, 0.0),
+            start_escape=(start_escape, 0.0),
+        )
+        return plan_poses(
+            space,
+            start,
+            goal,
+            effort,
+            algorithm=algorithm,
+            goal_radius=goal_radius,
+            simplify=simplify,
+            seed=seed,
+            **settings,
+        )
     request = check_request(
         space,
         start,

@@ -202,7 +202,7 @@ def check_request(
 
     Whether start and goal are free is not checked here: see ``outcome_without_search``.
     """
-    check_straight_lines(space, 'plan')
+    check_straight_lines(space, 'plan_trajectory')
     start, goal = check_point('start', start, space.dim), check_point('goal', goal, space.dim)
     goal_radius = check_number('goal_radius', goal_radius, 0.0)
     planner = for_space(make_planner(algorithm, settings or {}), space)

@@ -2,9 +2,12 @@
 
 from dataclasses import dataclass
 from enum import Enum
+import math
 from typing import NamedTuple
 
-from hnr_planner.core.checks import Floats
+from hnr_planner.core.checks import check_positive, Floats
+from hnr_planner.core.errors import RequestError
+from hnr_planner.core.spaces.poses.motion import orbit_poses
 import numpy as np
 from numpy.typing import NDArray
 
@@ -124,6 +127,9 @@ class PlanResult(SearchResult):
     escape : float
         Length of the first segment of the path [m] where it leads from a start that is not free
         to free space (``start_escape``); else 0.
+    twists : (m - 1, 3) or None
+        In a ``PoseSpace``, the twist [m, m, rad] that leads from each pose of the path to the next
+        in one unit of time: ``path[i + 1]`` is ``path[i]`` moved by ``twists[i]``. None elsewhere.
 
     """
 
@@ -131,6 +137,38 @@ class PlanResult(SearchResult):
     goal_offset: float = 0.0
     escape: float = 0.0
     lower_bound: float = 0.0
+    twists: Floats | None = None
+
+    def poses(self, spacing: float) -> Floats:
+        """
+        Interpolate a path of poses: all its vertices, and poses between them.
+
+        Parameters
+        ----------
+        spacing : float
+            Largest distance [m] between the robot's positions, and largest angle [rad] between
+            its headings.
+
+        Returns
+        -------
+        (n, 3)
+            Poses in the map frame, at most ``spacing`` apart.
+
+        Raises
+        ------
+        RequestError
+            When the spacing is not above 0, or the result is not of a ``PoseSpace``.
+
+        """
+        spacing = check_positive('spacing', spacing)
+        if self.twists is None:
+            raise RequestError('poses needs the result of a PoseSpace')
+        passed = [self.path[:1]]
+        for pose, twist, end in zip(self.path, self.twists, self.path[1:], strict=False):
+            extent = max(float(np.hypot(*twist[:2])), abs(float(twist[2])))
+            times = np.linspace(0.0, 1.0, 1 + max(1, math.ceil(extent / spacing)))[1:-1]
+            passed += [orbit_poses(pose, twist, times), end[np.newaxis]]
+        return np.concatenate(passed)
 
     @property
     def paths(self) -> tuple[Floats, ...]:

@@ -10,6 +10,7 @@ from hnr_planner.core.errors import SpaceError
 from hnr_planner.core.spaces.clearance import path_clearance
 from hnr_planner.core.spaces.grid.grid_space import GridSpace
 from hnr_planner.core.spaces.poses.data import motion_is_free, pose_data, PoseData
+from hnr_planner.core.spaces.poses.disc import Disc, largest_disc
 from hnr_planner.core.spaces.poses.drive import check_drive, Drive
 from hnr_planner.core.spaces.poses.footprint import check_footprint, prepare_footprint
 from hnr_planner.core.spaces.poses.motion import orbit_poses, wrap
@@ -221,6 +222,11 @@ class PoseSpace(Space):
         begin, velocity = check_point('pose', pose, 3), check_point('twist', twist, 3)
         when = check_points('times', times, np.size(times))
         return orbit_poses(begin, velocity, when)
+
+    @cached_property
+    def disc(self) -> Disc:
+        """The largest disc in the footprint, and the space of its centre."""
+        return largest_disc(self.grid, self.footprint)
 
     def outline(self, pose: ArrayLike) -> Floats:
         """Return the vertices (n, 2) [m] of the footprint at a pose (3,), map frame."""

@@ -1,0 +1,174 @@
+"""
+Shorten a path of poses: replace sections by cheaper connections between two of its poses.
+
+A section runs between two poses drawn uniformly along the path, or from a vertex. It is replaced
+where a connection between the two lowers the cost of the whole path: its length, what driving
+backwards costs, and a price for each change of direction.
+"""
+
+import math
+
+from hnr_planner.core.kernels.borrowed import borrowed
+from hnr_planner.core.kernels.kernel import kernel
+from hnr_planner.core.kernels.streams import uniform
+from hnr_planner.core.planning.poses.connections import (
+    connect,
+    connection_is_free,
+    cost_of,
+    N_KEPT,
+    N_MOTIONS,
+)
+from hnr_planner.core.spaces.poses.motion import moved, wrapped
+
+#: Probability that an end of a section is a vertex, where the motion changes.
+AT_VERTEX = 0.3
+#: Least decrease of the cost, as a fraction of it.
+LEAST_GAIN = 1e-4
+#: Motions that a replaced section may add, and rows at the end of the work arrays.
+SPARE_ROWS = N_MOTIONS + 5
+#: Difference of directions, relative, up to which two motions that follow each other are one.
+ALIKE = 1e-12
+
+
+@kernel
+def shorten_path(space, prices, poses, twists, n, spare_poses, spare_twists, found, rng, n_tries):
+    """
+    Try to replace sections of a path in place; return its number of motions.
+
+    Parameters
+    ----------
+    space, prices
+        The compiled space of poses, and the ``Prices`` of motions.
+    poses, twists : (m + 1, 3), (m, 3)
+        The path, with room for ``SPARE_ROWS`` motions more than n.
+    n : int
+        Number of its motions.
+    spare_poses, spare_twists
+        Work arrays of the same shapes.
+    found : Connections
+        Work arrays for connections.
+    rng : (4,) uint64
+        Random stream.
+    n_tries : int
+        Number of sections to try.
+
+    """
+    space, poses, twists = borrowed(space), borrowed(poses), borrowed(twists)
+    spare_poses, spare_twists = borrowed(spare_poses), borrowed(spare_twists)
+    found, rng = borrowed(found), borrowed(rng)
+    room = len(twists) - SPARE_ROWS
+    cost = cost_of(prices, twists, n, 1.0)
+    for _ in range(n_tries):
+        if n > room:
+            return n
+        i, f = _draw_end(space, twists, n, rng)
+        j, g = _draw_end(space, twists, n, rng)
+        if j < i or (j == i and g < f):
+            i, f, j, g = j, g, i, f
+        if j == i and f > 0.0 and g < 1.0:
+            continue
+        begin, end = spare_poses[len(twists)], spare_poses[len(twists) - 1]
+        _write_pose(poses, twists, i, f, begin)
+        _write_pose(poses, twists, j, g, end)
+        connect(space, prices, begin, end, 1.0, found)
+        for k in range(N_KEPT):
+            if found.costs[k] == math.inf or found.costs[k] >= cost:
+                break
+            m = _replaced(poses, twists, n, i, f, j, g, found, k, spare_poses, spare_twists)
+            lower = cost_of(prices, spare_twists, m, 1.0)
+            if lower < (1.0 - LEAST_GAIN) * cost and connection_is_free(
+                space, begin, found.twists[k], found.sizes[k]
+            ):
+                cost, n = lower, m
+                for row in range(n):
+                    for c in range(3):
+                        twists[row, c] = spare_twists[row, c]
+                        poses[row + 1, c] = spare_poses[row + 1, c]
+                break
+    return n
+
+
+@kernel
+def _draw_end(space, twists, n, rng):
+    """Return the end of a section: a motion of the path, and the share of it that is before."""
+    total = 0.0
+    for k in range(n):
+        total += _extent(space, twists, k)
+    along, k = uniform(rng) * total, 0
+    while k < n - 1 and along >= _extent(space, twists, k):
+        along -= _extent(space, twists, k)
+        k += 1
+    share = min(along / _extent(space, twists, k), 1.0)
+    if uniform(rng) < AT_VERTEX:
+        return k, 0.0 if share < 0.5 else 1.0
+    return k, share
+
+
+@kernel
+def _extent(space, twists, k):
+    """Return about how far [cells] the footprint moves in motion ``k``."""
+    vx, vy, omega = twists[k, 0], twists[k, 1], twists[k, 2]
+    return math.hypot(vx, vy) + 0.5 * space.reach * abs(omega)
+
+
+@kernel
+def _write_pose(poses, twists, k, share, pose):
+    """Write the pose after a share of motion ``k`` to ``pose`` (3,)."""
+    x, y, yaw = poses[k, 0], poses[k, 1], poses[k, 2]
+    if share >= 1.0:
+        x, y, yaw = poses[k + 1, 0], poses[k + 1, 1], poses[k + 1, 2]
+    elif share > 0.0:
+        x, y, yaw = moved(x, y, yaw, twists[k, 0], twists[k, 1], twists[k, 2], share)
+    pose[0], pose[1], pose[2] = x, y, wrapped(yaw)
+
+
+@kernel
+def _replaced(poses, twists, n, i, f, j, g, found, k, new_poses, new_twists):
+    """
+    Write the path with a section replaced by connection ``k``; return its number of motions.
+
+    The section begins after the share f of motion i, and ends after the share g of motion j.
+    """
+    m = 0
+    for row in range(i):
+        m = _append(new_poses, new_twists, m, twists, row, 1.0, poses[row + 1])
+    begin, end = new_poses[len(new_twists)], new_poses[len(new_twists) - 1]
+    if f > 0.0:
+        m = _append(new_poses, new_twists, m, twists, i, f, begin)
+    x, y, yaw = begin[0], begin[1], begin[2]
+    for row in range(found.sizes[k]):
+        motion = found.twists[k, row]
+        x, y, yaw = moved(x, y, yaw, motion[0], motion[1], motion[2], 1.0)
+        pose = new_poses[len(new_twists) - 2]
+        pose[0], pose[1], pose[2] = x, y, wrapped(yaw)
+        is_last = row == found.sizes[k] - 1
+        m = _append(new_poses, new_twists, m, found.twists[k], row, 1.0, end if is_last else pose)
+    if g < 1.0:
+        m = _append(new_poses, new_twists, m, twists, j, 1.0 - g, poses[j + 1])
+    for row in range(j + 1, n):
+        m = _append(new_poses, new_twists, m, twists, row, 1.0, poses[row + 1])
+    return m
+
+
+@kernel
+def _append(new_poses, new_twists, m, twists, row, share, end):
+    """
+    Append a share of a motion that ends at the pose ``end``; return the number of motions.
+
+    A motion that goes on along the one before is joined with it.
+    """
+    vx, vy, omega = share * twists[row, 0], share * twists[row, 1], share * twists[row, 2]
+    for c in range(3):
+        new_poses[m + 1, c] = end[c]
+    if m > 0:
+        wx, wy, turn = new_twists[m - 1, 0], new_twists[m - 1, 1], new_twists[m - 1, 2]
+        size = math.hypot(math.hypot(vx, vy), omega) * math.hypot(math.hypot(wx, wy), turn)
+        across = abs(vx * wy - vy * wx) + abs(vx * turn - omega * wx) + abs(vy * turn - omega * wy)
+        if across <= ALIKE * size and vx * wx + vy * wy + omega * turn > 0.0:
+            new_twists[m - 1, 0], new_twists[m - 1, 1] = wx + vx, wy + vy
+            new_twists[m - 1, 2] = turn + omega
+            for c in range(3):
+                new_poses[m, c] = end[c]
+            return m
+    new_twists[m, 0], new_twists[m, 1], new_twists[m, 2] = vx, vy, omega
+    return m + 1
