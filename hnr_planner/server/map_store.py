@@ -6,11 +6,12 @@ requests. A request takes a ``MapSnapshot``, which never changes: so no new map 
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 import threading
 
 from hnr_planner.core import GridSpace, HnrError
 from hnr_planner.maps import OccupancyMap
+from hnr_planner.server.keepout import with_zones, zones_on
 from hnr_planner.server.outcomes import Outcome, Refusal
 from hnr_planner.server.received_maps import MapError
 from hnr_planner.server.settings import Settings
@@ -29,12 +30,22 @@ class MapSnapshot:
         The map as it was received.
     number : int
         Number of this preparation in its store, from 1: a higher one is newer.
+    outside_zones : GridSpace, optional
+        The space of the same map without its keepout zones; None where there are none.
 
     """
 
     space: GridSpace
     occupancy: OccupancyMap
     number: int
+    outside_zones: GridSpace | None = field(default=None, kw_only=True)
+
+    def is_in_zone(self, point: tuple[float, float]) -> bool:
+        """Return whether only a keepout zone blocks a point [m]."""
+        outside = self.outside_zones
+        return outside is not None and bool(
+            outside.contains(point) and not self.space.contains(point)
+        )
 
     @property
     def frame(self) -> str:
@@ -51,6 +62,7 @@ class MapStore:
         self._snapshot: MapSnapshot | None = None
         self._missing = (Outcome.NO_MAP, 'no map has arrived yet')
         self._prepared = 0
+        self._masks: dict[str, OccupancyMap] = {}
         self._one_at_a_time = threading.Lock()
 
     def receive(self, read_map: Callable[[], OccupancyMap]) -> MapSnapshot:
@@ -84,6 +96,39 @@ class MapStore:
                     f'no good map has arrived yet; the last was refused: {why}',
                 )
                 raise MapError(why) from error
+
+    def receive_mask(
+        self, source: str, read_map: Callable[[], OccupancyMap] | None
+    ) -> MapSnapshot | None:
+        """
+        Put the keepout mask that ``read_map`` returns into use, in the place of its source's last.
+
+        Return the map prepared with it; None where there is no map yet, or the mask is the same.
+        Where ``read_map`` is None, the source has no mask any more.
+
+        Raises
+        ------
+        MapError
+            When the mask cannot be read or used; the last one of the source stays in use.
+
+        """
+        with self._one_at_a_time:
+            before = dict(self._masks)
+            try:
+                if read_map is None:
+                    self._masks.pop(source, None)
+                else:
+                    mask = read_map()
+                    if mask.is_same_as(before.get(source)):
+                        return None
+                    self._masks[source] = mask
+                if self._occupancy is None:
+                    return None
+                self._snapshot = self._prepare(self._occupancy)
+                return self._snapshot
+            except Exception as error:  # a mask must never take the node down
+                self._masks = before
+                raise MapError(_in_words(error)) from error
 
     def use(self, settings: Settings) -> MapSnapshot | None:
         """
@@ -140,11 +185,16 @@ class MapStore:
         return snapshot
 
     def _prepare(self, occupancy: OccupancyMap) -> MapSnapshot:
-        space = GridSpace.from_occupancy(
-            occupancy.data, occupancy.resolution, occupancy.origin, **self._arguments
-        )
+        frame, arguments = (occupancy.resolution, occupancy.origin), self._arguments
+        space, outside = GridSpace.from_occupancy(occupancy.data, *frame, **arguments), None
+        threshold = arguments['occupied_threshold']
+        zones = zones_on(occupancy, self._masks.values(), threshold)
+        if zones is not None and zones.any():
+            outside = space
+            data = with_zones(occupancy.data, zones, arguments['unknown'], threshold)
+            space = GridSpace.from_occupancy(data, *frame, **{**arguments, 'unknown': 'blocked'})
         self._prepared += 1
-        return MapSnapshot(space, occupancy, self._prepared)
+        return MapSnapshot(space, occupancy, self._prepared, outside_zones=outside)
 
 
 def _in_words(error: Exception) -> str:

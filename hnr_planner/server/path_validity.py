@@ -71,7 +71,11 @@ def first_blocked_pose(
 
 
 def judge_path(
-    points: NDArray[np.float64], frame: str, snapshot: MapSnapshot, robot: Pose | None
+    points: NDArray[np.float64],
+    frame: str,
+    snapshot: MapSnapshot,
+    robot: Pose | None,
+    lookahead: float = math.inf,
 ) -> PathVerdict:
     """
     Return which poses of a path are blocked from the robot on, and why the path is not valid.
@@ -89,15 +93,19 @@ def judge_path(
     robot : Pose, optional
         Pose of the robot in the frame of the map: poses before the pose nearest to the robot are
         not judged. None where it is not known: then all poses are judged.
+    lookahead : float
+        Length of the path [m], from the first pose that is judged, after which poses are not
+        judged.
 
     """
     if len(points) == 0:
         return PathVerdict([], 'the path has no poses')
     frame = frame or snapshot.frame
     blocked = blocked_poses(points, frame, snapshot)
-    if robot is not None:
-        passed = nearest_pose(points, robot)
-        blocked = [number for number in blocked if number >= passed]
+    passed = 0 if robot is None else nearest_pose(points, robot)
+    along = np.append(0.0, np.cumsum(np.hypot(*np.diff(points[passed:], axis=0).T)))
+    last = passed + np.count_nonzero(~(along > lookahead)) - 1
+    blocked = [number for number in blocked if passed <= number <= last]
     if frame != snapshot.frame:
         return PathVerdict(
             blocked, f"the path is in frame '{frame}', the map in '{snapshot.frame}'"

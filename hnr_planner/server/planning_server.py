@@ -7,6 +7,7 @@ import traceback
 from typing import TypeVar
 
 from hnr_planner.core.planning.planner import Planner
+from hnr_planner.server.kept_route import LastRoute
 from hnr_planner.server.map_store import MapSnapshot
 from hnr_planner.server.outcomes import Outcome, Refusal
 from hnr_planner.server.requests import PlanRequest
@@ -53,6 +54,7 @@ class PlanningServer:
         self.searches = RunningSearches()
         self.statistics = Statistics()
         self.roadmaps = Roadmaps(report_defect)
+        self.last_route = LastRoute()
 
     def plan(
         self,
@@ -66,7 +68,7 @@ class PlanningServer:
         ``arrived`` is when the request arrived, by ``time.monotonic`` [s]; now when left out.
         """
         settings, event = self._settings(), cancel or threading.Event()
-        return self._counted(
+        response = self._counted(
             event,
             lambda: respond(
                 request,
@@ -76,9 +78,13 @@ class PlanningServer:
                 self._to_frame,
                 arrived,
                 self._planner_for,
+                self.last_route.of,
             ),
             lambda refusal: PlanResponse(refusal.outcome, refusal.why, request),
         )
+        if response.solved and settings.keep_route > 0.0 and not response.request.via:
+            self.last_route.remember(response.request, response.path)
+        return response
 
     def follow_map(self) -> None:
         """Keep a roadmap of the newest map if the parameter ``roadmap`` is set; else none."""
@@ -87,6 +93,11 @@ class PlanningServer:
             return
         with suppress(Refusal):
             self.roadmaps.follow(self._newest_map())
+
+    def forget_map(self) -> None:
+        """Forget the roadmap and the last route."""
+        self.roadmaps.forget()
+        self.last_route.forget()
 
     def _planner_for(self, algorithm: str, snapshot: MapSnapshot) -> str | Planner:
         """Return the roadmap of a map for the algorithm auto, if it is ready; else the name."""

@@ -31,17 +31,20 @@ from hnr_planner.server.path_validity import first_blocked_pose
 from hnr_planner.server.poses import MOST_POSES, pose_rows
 from hnr_planner.server.requests import check_request, PlanRequest, Pose
 from hnr_planner.server.responses import PlanResponse
+from hnr_planner.server.route_keeping import keep_route
 from hnr_planner.server.settings import Settings
 from hnr_planner.server.stop_order import in_short_order
 from hnr_planner.server.times import Times
 from hnr_planner.server.trajectories import trajectory_path
 from hnr_planner.server.waiting import NewestMap, wait_for_map
 from hnr_planner.server.waypoints import joined
+from hnr_planner.server.zone_exits import led_out, zone_exit
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 ToFrame = Callable[[Pose, str], Pose]
 PlannerFor = Callable[[str, MapSnapshot], str | Planner]
+LastPath = Callable[[PlanRequest], NDArray[np.float64] | None]
 
 #: Time [s] that measuring the clearance of a path gets even when the time limit has passed.
 MEASURING_TIME = 0.02
@@ -63,6 +66,10 @@ def planner_by_name(algorithm: str, _snapshot: MapSnapshot) -> str:
     return algorithm
 
 
+def no_last_path(_request: PlanRequest) -> None:
+    """Return None: there is no last path."""
+
+
 def respond(
     request: PlanRequest,
     settings: Settings,
@@ -71,6 +78,7 @@ def respond(
     to_frame: ToFrame = only_same_frame,
     arrived: float | None = None,
     planner_for: PlannerFor = planner_by_name,
+    last_path: LastPath = no_last_path,
 ) -> PlanResponse:
     """
     Plan for ``request`` and return a response that says how planning ended.
@@ -94,6 +102,8 @@ def respond(
         When the request arrived, by ``time.monotonic`` [s]; now when left out.
     planner_for : callable
         Returns the planner for the name of an algorithm and a map.
+    last_path : callable
+        Returns the last path (m, 2) [m] to the goal of a request, or None.
 
     """
     arrived = time.monotonic() if arrived is None else arrived
@@ -104,7 +114,7 @@ def respond(
         check_request(request)
         with times.phase('map'):
             snapshot = wait_for_map(newest_map, settings.patience, cancel)
-        job = _Job(settings, newest_map, to_frame, limits, times, planner_for)
+        job = _Job(settings, newest_map, to_frame, limits, times, planner_for, last_path)
         response = job.plan_for_newest_map(request, snapshot)
     except Refusal as refusal:
         why = refusal.why + (remark_since(before) if limits.hold() else '')
@@ -127,6 +137,7 @@ class _Job:
     limits: RequestLimits
     times: Times
     planner_for: PlannerFor
+    last_path: LastPath
 
     def plan_for_newest_map(self, request: PlanRequest, snapshot: MapSnapshot) -> PlanResponse:
         """
@@ -226,25 +237,37 @@ class _Job:
         """
         Plan one leg from each pose to the next, on one map, and return them joined.
 
-        Each leg starts where the leg before it ended. The first leg that fails ends the work: its
-        response is returned, and ``why`` names the leg.
+        Each leg starts where the leg before it ended. The first leg that fails ends the work, and
+        ``why`` names it: its response is returned, or with ``allow_partial_planning`` and after a
+        leg that did not fail, those of the legs before it, with the last pose reached as the goal.
         """
         if not request.via:
             return self._plan(request, snapshot)
         request, order = self._ordered(request, snapshot)
+        in_order = f'poses in the order {", ".join(map(str, order))}; ' if order else ''
         legs: list[PlanResponse] = []
         start, ends = request.start, (*request.via, request.goal)
         for number, end in enumerate(ends, 1):
             leg = self._plan(replace(request, start=start, via=(), goal=end), snapshot, n_paths=1)
             if not leg.solved:
-                return replace(leg, why=f'leg {number} of {len(ends)}: {leg.why}')
+                failed = f'{in_order}leg {number} of {len(ends)}: {leg.why}'
+                partial = self.settings.allow_partial_planning and not self.limits.cancel.is_set()
+                if not (partial and legs):
+                    return replace(leg, why=failed)
+                why = f'the path ends at pose {number - 1} on the way, as allowed, since {failed}'
+                request = replace(request, via=ends[: number - 2], goal=ends[number - 2])
+                return replace(self._joined(request, legs), why=why, n_reached=len(legs))
             legs.append(leg)
             x, y = leg.path[-1].tolist()
             start = replace(end, position=(x, y, 0.0))
+        response = self._joined(request, legs)
+        return replace(response, why=in_order + response.why)
+
+    @staticmethod
+    def _joined(request: PlanRequest, legs: list[PlanResponse]) -> PlanResponse:
+        """Return the responses to solved legs as the response to ``request``."""
         result = joined([leg.result for leg in legs if isinstance(leg.result, PlanResult)])
         why = '; '.join(f'leg {number}: {leg.why}' for number, leg in enumerate(legs, 1))
-        if order:
-            why = f'poses in the order {", ".join(map(str, order))}; {why}'
         return replace(legs[0], why=why, request=request, result=result)
 
     def _ordered(
@@ -280,12 +303,13 @@ class _Job:
         arguments = self.settings.plan_arguments
         if n_paths is not None:
             arguments['alternatives'] = n_paths
+        start, exit_point = request.start.point, zone_exit(request, snapshot)
         try:
             if request.has_inertia:
                 return self._plan_trajectory(request, snapshot)
             result = plan(
                 snapshot.space,
-                request.start.point,
+                start if exit_point is None else exit_point,
                 request.goal.point,
                 algorithm=self.planner_for(request.algorithm, snapshot),
                 goal_tolerance=request.tolerance,
@@ -296,12 +320,19 @@ class _Job:
         except RequestError as error:
             raise Refusal(Outcome.BAD_REQUEST, str(error)) from error
         self.times.add_planning(result)
+        if exit_point is not None:
+            result = led_out(result, start, exit_point)
+        with self.times.phase('shortening'):
+            result, route = keep_route(
+                result, self.last_path(request), snapshot.space, self.settings, self.limits
+            )
         return PlanResponse(
             Outcome[result.status.name],
-            result.message,
+            result.message + _about_zones(request, snapshot, result),
             request,
             result,
             escape=result.escape,
+            route=route,
             snapshot=snapshot,
         )
 
@@ -369,6 +400,18 @@ class _Job:
         return result
 
 
+def _about_zones(request: PlanRequest, snapshot: MapSnapshot, result: PlanResult) -> str:
+    """Return what keepout zones have to do with a result, as the end of its message."""
+    ends = {
+        PlannerStatus.INVALID_START: ('start', request.start),
+        PlannerStatus.INVALID_GOAL: ('goal', request.goal),
+    }
+    if result.status in ends:
+        name, pose = ends[result.status]
+        return f'; the {name} is in a keepout zone' if snapshot.is_in_zone(pose.point) else ''
+    return ''
+
+
 def _is_still_free(response: PlanResponse, newer: MapSnapshot) -> bool:
     """
     Return whether the path of ``response`` is one on the map ``newer`` as well.
@@ -382,5 +425,8 @@ def _is_still_free(response: PlanResponse, newer: MapSnapshot) -> bool:
     if response.escape == 0.0:
         return True
     start, goal = np.array(response.request.start.point), np.array(response.request.goal.point)
+    exit_point = zone_exit(response.request, newer)
+    if exit_point is not None:
+        return np.array_equal(exit_point, response.path[1])
     outside = escape_point(newer.space, start, goal, 2.0 * response.escape)
     return outside is not None and np.array_equal(outside, response.path[1])

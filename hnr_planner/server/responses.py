@@ -105,6 +105,12 @@ class PlanResponse(Response):
     escape : float
         Length [m] of the first segment of the path, where this segment leads out of a start that
         is not free; 0 where the start is free.
+    n_reached : int, optional
+        Number of poses that the path reaches, where it ends before the last one of a request; None
+        where it reaches all.
+    route : str
+        Where the path comes from, with the parameter ``keep_route``: 'kept', 'mended' or 'new';
+        else empty.
     blocked : PlanarPose, optional
         The first place where a path is blocked by a map that came after the path was found; None
         in the response to a request.
@@ -118,6 +124,8 @@ class PlanResponse(Response):
     trajectory: Trajectory | None = None
     clearance: float = math.nan
     escape: float = 0.0
+    n_reached: int | None = None
+    route: str = ''
     blocked: PlanarPose | None = None
 
     @property
@@ -177,6 +185,8 @@ class PlanResponse(Response):
             'offset': f'{self.offset:.6g}',
             'escape': f'{self.escape if self.solved else math.nan:.6g}',
         }
+        if self.route:
+            values['route'] = self.route
         if self.blocked is not None:
             values |= {f'blocked_{name}': f'{n:.6g}' for name, n in self.blocked._asdict().items()}
         if self.result is not None:

@@ -99,6 +99,13 @@ class Settings:
         'Build a roadmap of each map in the background, and plan with it under the algorithm '
         'auto once it is ready.',
     )
+    keep_route: float = setting(
+        0.0,
+        'The last path to the same goal, mended where robot and map have moved, is kept unless a '
+        'new one is shorter by more than this fraction of it; 0: each request is planned afresh.',
+        lower=0.0,
+        upper=1.0,
+    )
     max_acceleration: float = setting(
         1.0,
         'Largest acceleration of a robot with inertia, for the services ~/plan_kinodynamic_...',
@@ -206,6 +213,11 @@ class Settings:
         ('GridBased:auto',),
         'Names of planners in goals of Nav2, each with the algorithm that it stands for.',
         entries='NAME:ALGORITHM',
+    )
+    allow_partial_planning: bool = setting(
+        False,
+        'Whether a path through poses may end at the last pose that can be reached, after the '
+        'first one at least; else it fails.',
     )
     rviz_clicks: bool = setting(
         False, 'Listen to the click tools of RViz: initialpose keeps the start, goal_pose plans.'

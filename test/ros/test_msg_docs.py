@@ -7,7 +7,7 @@ from importlib.util import find_spec
 from pathlib import Path
 import re
 import shlex
-from test.ros.harness import Client, LATCHED, MANY, node_process, NodeProcess, until
+from test.ros.harness import Client, LATCHED, MANY, node_process, NodeProcess, pose, until
 from typing import Any
 
 from geometry_msgs.msg import PoseStamped, PoseWithCovarianceStamped
@@ -266,9 +266,17 @@ def test_page_of_outcomes_names_them_all(client: Client) -> None:
     assert values <= named
 
 
+def test_example_of_keepout_zones_works(client: Client, planner: NodeProcess) -> None:
+    publishing_example(client, 'keepout')
+    planner.wait_for('keepout mask from keepout received')
+    assert (
+        client.outcome_of(client.plan(pose(3.0, 2.0), pose(6.0, 5.5)))[0] is Outcome.INVALID_GOAL
+    )
+
+
 def test_example_of_a_map_works(client: Client, planner: NodeProcess) -> None:
     """Stands last: it replaces the map of the other examples."""
     publishing_example(client, 'map')
     planner.wait_for('3 x 2 cells of 1 m')
     published = {words[-3] for words in examples('ros2 topic pub')}
-    assert published == {'map', 'map_updates', 'initialpose', 'goal_pose'}
+    assert published == {'map', 'map_updates', 'keepout', 'initialpose', 'goal_pose'}

@@ -74,7 +74,13 @@ def to_pose(**changes: Any) -> Any:
 def through_poses(*goals: tuple[float, float], **changes: Any) -> Any:
     """Return a goal of the second action."""
     usual = {'start': pose(*START), 'use_start': True}
-    return ThroughPoses.Goal(goals=[pose(*goal) for goal in goals], **(usual | changes))
+    message = ThroughPoses.Goal(**(usual | changes))
+    poses = [pose(*goal) for goal in goals]
+    if hasattr(message.goals, 'goals'):  # newer ones of Nav2 wrap them
+        message.goals.goals = poses
+    else:
+        message.goals = poses
+    return message
 
 
 def send(action: ActionClient, goal: Any) -> Any:
@@ -179,6 +185,53 @@ def test_failures_through_poses(actions: dict[str, ActionClient]) -> None:
     assert 'leg 1 of 2' in result.error_msg
 
 
+def test_partial_path_through_poses_where_it_is_allowed(
+    actions: dict[str, ActionClient], client: Client
+) -> None:
+    action, goals = actions['compute_path_through_poses'], (MIDDLE, (2.5, 0.1), GOAL)
+    status, result = ask(action, through_poses(*goals))
+    assert status == GoalStatus.STATUS_ABORTED
+    client.set_parameters(allow_partial_planning=True)
+    status, result = ask(action, through_poses(*goals))
+    none, _ = ask(action, through_poses((2.5, 0.1), GOAL))
+    client.set_parameters(allow_partial_planning=False)
+    assert (status, none) == (GoalStatus.STATUS_SUCCEEDED, GoalStatus.STATUS_ABORTED)
+    assert points_of(result.path)[-1].tolist() == list(MIDDLE)
+    assert 'leg 2 of 3' in client.outcome_of(result.path)[1]['why']
+    if hasattr(ThroughPoses.Result, 'ALL_GOALS'):
+        assert result.last_reached_index == 0
+        assert ask(action, through_poses(MIDDLE))[1].last_reached_index == -1
+
+
+@pytest.mark.skipif(not hasattr(ToPose.Goal(), 'viapoints'), reason='Nav2 has none here yet')
+def test_viapoints_are_met(actions: dict[str, ActionClient]) -> None:
+    goal = to_pose(viapoints=[pose(*MIDDLE)])
+    status, result = ask(actions['compute_path_to_pose'], goal)
+    assert status == GoalStatus.STATUS_SUCCEEDED
+    assert list(MIDDLE) in points_of(result.path).tolist()
+
+
+@pytest.mark.skipif(not hasattr(IsPathValid.Request(), 'footprint'), reason='not in this Nav2')
+def test_path_is_judged_as_newer_requests_want(
+    actions: dict[str, ActionClient], client: Client
+) -> None:
+    path = ask(actions['compute_path_to_pose'], to_pose())[1].path
+    for blocked in (10, 20):
+        path.poses[blocked].pose.position.x = 2.5
+        path.poses[blocked].pose.position.y = 0.1
+
+    def judged(**wishes: Any) -> Any:
+        return client.call(IsPathValid, '/is_path_valid', IsPathValid.Request(path=path, **wishes))
+
+    assert len(judged(stop_at_first_collision=True).invalid_pose_indices) == 1
+    assert len(judged(stop_at_first_collision=False).invalid_pose_indices) > 1
+    ahead = judged(max_lookahead_distance=0.2)
+    assert ahead.success and ahead.is_valid
+    for wishes in ({'layer_name': 'a'}, {'footprint': '[[0, 0]]'}, {'max_cost': 10}):
+        refused = judged(**wishes)
+        assert not refused.success and not refused.is_valid
+
+
 def test_start_of_the_robot_needs_a_transform(actions: dict[str, ActionClient]) -> None:
     status, result = ask(actions['compute_path_to_pose'], to_pose(use_start=False))
     assert status == GoalStatus.STATUS_ABORTED
@@ -244,7 +297,10 @@ def test_validity_of_a_path(
     actions: dict[str, ActionClient], client: Client, planner: NodeProcess
 ) -> None:
     def judged(path: Path) -> tuple[bool, list[int]]:
-        answer = client.call(IsPathValid, '/is_path_valid', IsPathValid.Request(path=path))
+        request = IsPathValid.Request(path=path)
+        if hasattr(request, 'stop_at_first_collision'):
+            request.stop_at_first_collision = False
+        answer = client.call(IsPathValid, '/is_path_valid', request)
         return answer.is_valid, list(answer.invalid_pose_indices)
 
     path = ask(actions['compute_path_to_pose'], to_pose())[1].path
@@ -269,7 +325,10 @@ def test_examples_of_the_pages_work(client: Client, planner: NodeProcess) -> Non
     for name, kind, fields in examples('ros2 action send_goal'):
         action = ACTIONS[name.removeprefix('/')]
         assert kind == f'nav2_msgs/action/{action.__name__}'
-        goal = fill(action.Goal(), yaml.safe_load(fields))
+        values = yaml.safe_load(fields)
+        if hasattr(getattr(action.Goal(), 'goals', None), 'goals'):  # as newer ones wrap them
+            values['goals'] = {'goals': values['goals']}
+        goal = fill(action.Goal(), values)
         status, result = ask(ActionClient(client.node, action, name), goal)
         assert status == GoalStatus.STATUS_SUCCEEDED, result.error_msg
     ((name, _, fields),) = (e for e in examples('ros2 service call') if 'nav2_msgs' in e[1])

@@ -85,6 +85,12 @@ def test_what_needs_shortening_is_refused_without(name: str, value: float) -> No
     assert repr(value) in str(refusal.value)
 
 
+def test_escape_of_nav2_leaves_an_inflation_and_no_more() -> None:
+    nav2 = yaml.safe_load((CONFIG.parent / 'nav2.yaml').read_text())
+    values = nav2['/**/hnr_planner']['ros__parameters']
+    assert 0.0 < values['escape_radius'] <= values['robot_radius'] + 2 * 0.05
+
+
 @pytest.mark.parametrize('alias', ['GridBased', ':auto', 'GridBased:a_star', 'GridBased:'])
 def test_alias_of_no_algorithm_is_refused_with_value_and_rule(alias: str) -> None:
     with pytest.raises(SettingsError) as refusal:

@@ -17,6 +17,7 @@ from hnr_planner.ros.messages.paths import points_from_path, pose_from_message
 from hnr_planner.server.nav2 import error_name, goal_request, robot_pose
 from hnr_planner.server.outcomes import Refusal
 from hnr_planner.server.path_validity import judge_path
+from hnr_planner.server.path_wishes import PathWishes
 from hnr_planner.server.request_log import shortened
 from hnr_planner.server.requests import PlanRequest, Pose
 from hnr_planner.server.respond import ToFrame
@@ -77,8 +78,8 @@ class Nav2Server:
         self._to_frame = to_frame
         self._logger = node.get_logger()
         for kind, name, poses_of in (
-            (ComputePathToPose, 'compute_path_to_pose', lambda goal: [goal.goal]),
-            (ComputePathThroughPoses, 'compute_path_through_poses', lambda goal: goal.goals),
+            (ComputePathToPose, 'compute_path_to_pose', _poses_to_one),
+            (ComputePathThroughPoses, 'compute_path_through_poses', _poses_through),
         ):
             _Action(node, kind, name, poses_of, server, settings)
         node.create_service(
@@ -91,18 +92,24 @@ class Nav2Server:
         """
         Judge a path on the newest map, from the pose nearest to the robot on.
 
-        Without a map the path is not valid. Why a path is not valid is logged as a warning.
+        Without a map the path is not valid, nor is it where the request wants what this node does
+        not have. Why a path is not valid is logged as a warning.
         """
         response.is_valid = False
+        wishes = PathWishes.of(request)
         try:
+            wishes.check(self._settings())
             snapshot = self._newest_map()
         except Refusal as refusal:
             why = f'{refusal.outcome.name}: {refusal.why}'
         else:
             points, frame = points_from_path(request.path), request.path.header.frame_id
-            verdict = judge_path(points, frame, snapshot, self._find_robot(snapshot.frame))
+            robot = self._find_robot(snapshot.frame)
+            verdict = judge_path(points, frame, snapshot, robot, wishes.lookahead)
             response.is_valid = not verdict.why
-            response.invalid_pose_indices = verdict.blocked
+            response.invalid_pose_indices = verdict.blocked[: wishes.most_indices]
+            if hasattr(response, 'success'):
+                response.success = True
             why = verdict.why
         if why:
             self._logger.warning(shortened(f'is_path_valid: {why}'))
@@ -242,7 +249,19 @@ class _Action:
         if not response.solved:
             why = 'a newer goal took its place' if goal.preempted else response.why
             fields['error_msg'] = f'{response.outcome.name}: {why}'
+        if response.n_reached is not None and hasattr(self._results.kind.Result, 'ALL_GOALS'):
+            fields['last_reached_index'] = response.n_reached - 1
         return self._results.make(response.poses, header, **fields)
+
+
+def _poses_to_one(goal: Any) -> list[PoseStamped]:
+    """Return the goal of an action to one pose, after its ``viapoints`` where Nav2 has them."""
+    return [*getattr(goal, 'viapoints', ()), goal.goal]
+
+
+def _poses_through(goal: Any) -> list[PoseStamped]:
+    """Return the goals of an action through poses; newer ones of Nav2 wrap them."""
+    return list(getattr(goal.goals, 'goals', goal.goals))
 
 
 def _key(handle: ServerGoalHandle) -> bytes:

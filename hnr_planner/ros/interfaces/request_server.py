@@ -128,7 +128,7 @@ class RequestServer:
     def forget_map(self) -> None:
         """Forget the last path and the roadmap."""
         self.path_monitor.forget()
-        self.roadmaps.forget()
+        self._server.forget_map()
 
     def response_sent(self) -> None:
         """Release the messages about the response that this thread got last from this server."""

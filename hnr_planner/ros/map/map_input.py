@@ -4,6 +4,7 @@ from collections.abc import Callable
 import time
 
 from hnr_planner.maps import OccupancyMap
+from hnr_planner.ros.map.keepout import KeepoutMasks
 from hnr_planner.ros.map.subscription import MapSubscription
 from hnr_planner.ros.map.updates import MapUpdates
 from hnr_planner.ros.messages.maps import map_from_message, map_with_update
@@ -11,6 +12,7 @@ from hnr_planner.server.map_advice import MapAdvice
 from hnr_planner.server.map_store import MapSnapshot, MapStore
 from hnr_planner.server.received_maps import MapError
 from hnr_planner.server.settings import Settings
+from nav_msgs.msg import OccupancyGrid
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
 from rclpy.node import Node
 
@@ -47,6 +49,7 @@ class MapInput:
             settings().map_subscribe_transient_local,
             group,
         )
+        self._keepout = KeepoutMasks(node, self._receive_mask, group)
         self._updates = MapUpdates(
             node,
             f'{self.topic}_updates',
@@ -83,6 +86,7 @@ class MapInput:
         """End the subscriptions to maps and updates."""
         self._subscription.close()
         self._updates.close()
+        self._keepout.close()
 
     def _receive(self, read_map: Callable[[], OccupancyMap]) -> None:
         """Put the map that ``read_map`` returns into use; log a bad map and keep the last one."""
@@ -96,6 +100,22 @@ class MapInput:
         self._received_at = began
         if snapshot is not before:
             self._log('received and prepared', snapshot, before, began)
+
+    def _receive_mask(self, source: str, message: OccupancyGrid | None) -> None:
+        """Put a keepout mask into use, or withdraw it; log a bad one and keep the last one."""
+        began, before = time.monotonic(), self._store.snapshot
+        try:
+            snapshot = self._store.receive_mask(
+                source, None if message is None else lambda: map_from_message(message)
+            )
+        except MapError as error:
+            self._logger.error(f'keepout mask from {source} refused: {error}')
+            return
+        self._logger.info(
+            f'keepout mask from {source} {"withdrawn" if message is None else "received"}'
+        )
+        if snapshot is not None:
+            self._log('prepared again with keepout zones', snapshot, before, began)
 
     def _log(
         self, done: str, snapshot: MapSnapshot, before: MapSnapshot | None, began: float

@@ -29,7 +29,14 @@ LONGEST_USE = 5.0
 @pytest.fixture
 def planner(tmp_path: Path) -> Iterator[NodeProcess]:
     """Run a planning node; a request may take long on a busy machine, but none times out."""
-    settings = {'time_limit': 30.0, 'pose_spacing': 0.5}
+    settings = {
+        'time_limit': 30.0,
+        'pose_spacing': 0.5,
+        'clearance': 0.2,
+        'alternatives': 2,
+        'roadmap': True,
+        'keep_route': 0.1,
+    }
     with node_process('planner_node', tmp_path / 'log', **settings) as process:
         yield process
         assert 'Traceback' not in process.log

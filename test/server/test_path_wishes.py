@@ -1,0 +1,35 @@
+"""What a request to judge a path wants is fulfilled or refused, never ignored."""
+
+from types import SimpleNamespace
+
+from hnr_planner.server.outcomes import Outcome, Refusal
+from hnr_planner.server.path_wishes import PathWishes
+from hnr_planner.server.settings import Settings
+import pytest
+
+
+def test_request_without_further_fields_wishes_nothing() -> None:
+    wishes = PathWishes.of(SimpleNamespace(path=None))
+    assert wishes == PathWishes()
+    wishes.check(Settings(unknown='free'))
+
+
+@pytest.mark.parametrize(
+    ('field', 'value'),
+    [
+        ('layer_name', 'voxels'),
+        ('footprint', '[[0.1, 0.1], [0.1, -0.1], [-0.1, 0.0]]'),
+        ('max_cost', 100),
+        ('consider_unknown_as_obstacle', True),
+    ],
+)
+def test_what_the_node_does_not_have_is_refused(field: str, value: object) -> None:
+    wishes = PathWishes.of(SimpleNamespace(**{field: value}))
+    with pytest.raises(Refusal, match=f'{field} must be') as refusal:
+        wishes.check(Settings(unknown='free'))
+    assert refusal.value.outcome is Outcome.BAD_REQUEST
+    assert str(value).lower() in str(refusal.value).lower()
+
+
+def test_unknown_cells_block_by_the_parameters_anyway() -> None:
+    PathWishes(unknown_blocks=True).check(Settings())
