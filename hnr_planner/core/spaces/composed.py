@@ -9,13 +9,18 @@ from hnr_planner.core.spaces.space import Space
 
 
 def check_members(members: Iterable[Any]) -> tuple[Space, ...]:
-    """Return the members as a tuple; raise SpaceError unless there is one and all are spaces."""
+    """Return the members as a tuple; raise SpaceError unless all are spaces with an inside."""
     spaces = tuple(members)
     if not spaces:
         raise SpaceError('there must be at least one member, got none')
     for member in spaces:
         if not isinstance(member, Space):
             raise SpaceError(f'a member must be a space, got {member!r}')
+        if member.kernel_dim < member.dim:
+            raise SpaceError(
+                f'a member must have an inside in its {member.dim} dimensions, got {member!r}, '
+                f'which can only be sampled'
+            )
     return spaces
 
 
