@@ -66,12 +66,16 @@ setup(
             'ros-jazzy-common-interfaces==5.3.*',
             'ros-jazzy-rclpy[fastrtps]==7.1.*',
         ],
+        # `sample(..., n_jobs=)`.
+        'joblib': ['joblib>=1.3'],
         # For those who hand draws on to it; the package itself does without.
         'arviz': ['arviz>=0.17'],
         'test': [
             'arviz>=0.17',
             'colcon-common-extensions>=0.3',
+            'highspy>=1.7',
             'hypothesis>=6.98',
+            'joblib>=1.3',
             'pytest>=7.4',
             'pytest-xdist>=3.4',
             'selenium>=4.18',

@@ -28,6 +28,7 @@ from benchmarks.properties import properties
 from benchmarks.race import FULL, QUICK, race, Standing
 from benchmarks.report import missing_words, report
 from benchmarks.roadmap import roadmap
+from benchmarks.rounded_sampling import rounded_sampling
 from benchmarks.sampling import sampling
 from benchmarks.sections import Bench, SectionOf, verdict_table
 from benchmarks.short_path import short_path
@@ -45,6 +46,7 @@ SECTIONS: tuple[SectionOf, ...] = (
     exact,
     roadmap,
     sampling,
+    rounded_sampling,
     clearance,
     kinodynamic,
     answers,

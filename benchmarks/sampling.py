@@ -280,7 +280,7 @@ def sampling(bench: Bench) -> Section:
     verdicts: list[Verdict] = []
     rows: list[list[str]] = []
     with on_one_core():
-        hopsy = _hopsy(bench)
+        hopsy = import_hopsy(bench)
         if hopsy:
             verdicts += [each.verdict for each in step_duels(hopsy, n_turns)]
             for polytope in (cube(ESS_DIM), simplex(ESS_DIM)):
@@ -306,7 +306,7 @@ def _ess_verdict(polytope: Polytope, ours: list[Rate], hopsys: list[Rate]) -> Ve
     return Verdict(what, '1 x', measured, ratio >= 1.0)
 
 
-def _hopsy(bench: Bench) -> Any:
+def import_hopsy(bench: Bench) -> Any:
     """Import hopsy, or return None where it is missing."""
     try:
         with warnings.catch_warnings():

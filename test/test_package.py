@@ -64,11 +64,11 @@ IN_ROSDEP = {
     'shapely': 'python3-shapely',
     'yaml': 'python3-yaml',
 }
-#: rosdep has a key for numba, but Ubuntu 24.04 no package; it has neither for arviz. Tests in a
-#: browser are skipped where selenium is missing.
-NOT_IN_ROSDEP = {'arviz', 'numba', 'selenium'}
+#: rosdep has a key for numba, but Ubuntu 24.04 no package; it has neither for arviz and highspy.
+#: Tests in a browser are skipped where selenium is missing.
+NOT_IN_ROSDEP = {'arviz', 'highspy', 'numba', 'selenium'}
 #: Imported by one function only, for those who have it.
-OPTIONAL = {'arviz'}
+OPTIONAL = {'arviz', 'joblib'}
 
 
 def imports(path: Path) -> Iterator[str]:
@@ -180,7 +180,7 @@ def test_pip_requirements_are_what_a_robot_imports(distribution: Any) -> None:
 def test_an_extra_is_what_its_layers_import_besides(
     distribution: Any, extra: str, layers: tuple[str, ...]
 ) -> None:
-    needed = libraries_of(layers) - libraries_of(OF_A_ROBOT)
+    needed = libraries_of(layers) - (libraries_of(OF_A_ROBOT) - OPTIONAL)
     assert names(distribution.extras_require[extra]) == on_pypi(needed)
     assert set(EXTRAS[extra]) == needed
 
@@ -192,7 +192,7 @@ def test_commands_themselves_need_no_extra() -> None:
 def test_rosdep_keys_are_what_a_robot_imports(manifest: ElementTree.Element) -> None:
     declared = {element.text for element in manifest.iter('exec_depend')}
     robot = [source(module) for module in MODULES if is_in(module, OF_A_ROBOT)]
-    imported = libraries(*robot, *ROOT.glob('launch/*.py')) - NOT_IN_ROSDEP
+    imported = libraries(*robot, *ROOT.glob('launch/*.py')) - NOT_IN_ROSDEP - OPTIONAL
     assert declared == {IN_ROSDEP.get(name, name) for name in imported}
 
 

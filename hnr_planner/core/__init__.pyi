@@ -23,9 +23,13 @@ from hnr_planner.core.planning.result import PlannerStatus as PlannerStatus
 from hnr_planner.core.planning.result import PlanResult as PlanResult
 from hnr_planner.core.planning.result import SearchResult as SearchResult
 from hnr_planner.core.planning.roadmap.roadmap import Roadmap as Roadmap
+from hnr_planner.core.sampling.annealing import anneal as anneal
+from hnr_planner.core.sampling.annealing import Optimum as Optimum
 from hnr_planner.core.sampling.chains import begin_chains as begin_chains
 from hnr_planner.core.sampling.chains import Chains as Chains
 from hnr_planner.core.sampling.chains import walk_on as walk_on
+from hnr_planner.core.sampling.densities import Exponential as Exponential
+from hnr_planner.core.sampling.densities import Gaussian as Gaussian
 from hnr_planner.core.sampling.diagnostics import diagnose as diagnose
 from hnr_planner.core.sampling.diagnostics import Diagnosis as Diagnosis
 from hnr_planner.core.sampling.diagnostics import relaxation_time as relaxation_time
@@ -34,6 +38,7 @@ from hnr_planner.core.sampling.diagnostics import total_variation as total_varia
 from hnr_planner.core.sampling.diagnostics import TotalVariation as TotalVariation
 from hnr_planner.core.sampling.free_space import FreeSpaceDraws as FreeSpaceDraws
 from hnr_planner.core.sampling.free_space import sample_free_space as sample_free_space
+from hnr_planner.core.sampling.rounding import round_space as round_space
 from hnr_planner.core.sampling.sample import sample as sample
 from hnr_planner.core.sampling.walks import BallWalk as BallWalk
 from hnr_planner.core.sampling.walks import CoordinateHitAndRunWalk as CoordinateHitAndRunWalk
@@ -44,12 +49,14 @@ from hnr_planner.core.spaces import BoxSpace as BoxSpace
 from hnr_planner.core.spaces import Chord as Chord
 from hnr_planner.core.spaces import DifferenceSpace as DifferenceSpace
 from hnr_planner.core.spaces import GridSpace as GridSpace
+from hnr_planner.core.spaces import MappedSpace as MappedSpace
 from hnr_planner.core.spaces import OracleError as OracleError
 from hnr_planner.core.spaces import OracleSpace as OracleSpace
 from hnr_planner.core.spaces import PolygonSpace as PolygonSpace
 from hnr_planner.core.spaces import PolytopeSpace as PolytopeSpace
 from hnr_planner.core.spaces import PoseSpace as PoseSpace
 from hnr_planner.core.spaces import ProductSpace as ProductSpace
+from hnr_planner.core.spaces import RoundedSpace as RoundedSpace
 from hnr_planner.core.spaces import ShearedSpace as ShearedSpace
 from hnr_planner.core.spaces import Space as Space
 from hnr_planner.core.spaces import UnionSpace as UnionSpace

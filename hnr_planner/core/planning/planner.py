@@ -10,6 +10,7 @@ started where the start reaches the goal directly. All arrays are in the space's
 from typing import Any, NamedTuple, Protocol
 
 from hnr_planner.core.checks import Floats
+from hnr_planner.core.errors import RequestError
 from hnr_planner.core.kernels.kernel import kernel
 from hnr_planner.core.kernels.streams import Stream
 from hnr_planner.core.spaces.primitives import segment_is_free
@@ -55,12 +56,23 @@ class Problem(NamedTuple):
     scale: float
 
 
+def check_rigid(space: Space) -> None:
+    """Raise RequestError for a space whose kernel frame does not keep lengths."""
+    if not space.is_rigid:
+        raise RequestError(
+            f'no path can be planned in {space!r}, whose coordinates do not keep lengths: a '
+            f'rounded space has a base to plan in, a polytope with equations can only be sampled'
+        )
+
+
 def make_problem(space: Space, start: Floats, goal: Floats, goal_radius: float) -> Problem:
     """
     Return the problem of a path from start to goal in a space, converted to the kernel frame.
 
-    ``start`` and ``goal`` (dim,) and ``goal_radius`` are in the caller's frame [m].
+    ``start`` and ``goal`` (dim,) and ``goal_radius`` are in the caller's frame [m]. Raise
+    RequestError for a space whose kernel frame does not keep lengths.
     """
+    check_rigid(space)
     lower, upper = space.kernel_bounds
     start, goal = space.to_kernel(np.array((start, goal)))
     return Problem(

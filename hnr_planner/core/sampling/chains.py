@@ -21,17 +21,16 @@ from hnr_planner.core.errors import RequestError, StuckError
 from hnr_planner.core.kernels.borrowed import borrowed
 from hnr_planner.core.kernels.kernel import kernel
 from hnr_planner.core.kernels.streams import Stream, stream
-from hnr_planner.core.sampling.walks import (
-    make_walk,
+from hnr_planner.core.sampling.steps import (
     MOVES,
     N_COUNTS,
     REDRAWS,
     STEPS,
     STILL,
     take_step,
-    Walk,
     ZERO_CHORDS,
 )
+from hnr_planner.core.sampling.walks import make_walk, Walk
 from hnr_planner.core.spaces.chain_cache import memory_size, open_cache, REFRESH, refresh
 from hnr_planner.core.spaces.space import Space
 import numpy as np
@@ -58,7 +57,7 @@ class Chain(NamedTuple):
         State of the random stream that the chain draws from.
     counts : (N_COUNTS,) int64
         Counters, indexed by ``STEPS``, ``MOVES``, ``ZERO_CHORDS``, ``REDRAWS`` and ``STILL`` of
-        module ``walks``.
+        module ``steps``.
 
     """
 
@@ -74,7 +73,7 @@ def new_chain(space: Space, x: Floats, rng: Stream) -> Chain:
 
     The chain holds ``x`` and ``rng`` themselves, not copies: ``run_chain`` changes both arrays.
     """
-    memory = np.zeros(memory_size(space.data, space.dim))
+    memory = np.zeros(memory_size(space.data, space.kernel_dim))
     return Chain(x, memory, rng, np.zeros(N_COUNTS, dtype=np.int64))
 
 
@@ -82,7 +81,8 @@ def run_chain(space: Space, walk: Any, chain: Chain, thin: int, draws: Floats) -
     """
     Run a chain for ``n_draws * thin`` steps, and write every ``thin``-th point into ``draws``.
 
-    ``walk`` is the compiled form of a walk, ``draws`` is (n_draws, dim), in the kernel frame.
+    ``walk`` is the compiled form of a walk, ``draws`` is (n_draws, kernel_dim), in
+    the kernel frame.
 
     Raises
     ------
@@ -91,7 +91,7 @@ def run_chain(space: Space, walk: Any, chain: Chain, thin: int, draws: Floats) -
         runs.
 
     """
-    u = np.zeros(space.dim)
+    u = np.zeros(space.kernel_dim)
     for rows in in_chunks(len(draws), None, max(1, STEPS_AT_ONCE // thin)):
         take_steps(space.data, walk, chain, u, thin, draws[rows])
         if chain.counts[STILL] >= STUCK_AFTER:
@@ -160,6 +160,10 @@ class Chains:
     def chain(self, k: int) -> Chain:
         """Return the state of chain ``k`` as views of these arrays, not copies."""
         return Chain(self.points[k], self.memory[k], self.streams[k], self.counts[k])
+
+    def one(self, k: int) -> 'Chains':
+        """Return chain ``k`` alone, as views of these arrays, not copies."""
+        return Chains(*(array[k : k + 1] for array in vars(self).values()))
 
     @property
     def steps(self) -> NDArray[np.int64]:
@@ -251,17 +255,24 @@ def walk_on(
     Raises
     ------
     RequestError
-        When an argument is malformed, or the arrays of the chains do not have the shapes that
-        belong to this space.
+        When an argument is malformed, the arrays of the chains do not have the shapes that belong
+        to this space, or a log-density is not a finite number at the point of a chain.
+    OracleError
+        When a log-density in Python raised an exception.
     StuckError
         When a chain has not moved for ``STUCK_AFTER`` (1000) consecutive steps.
 
     """
     n_draws, thin = check_count('n_draws', n_draws, 0), check_count('thin', thin, 1)
-    compiled = make_walk(walk).compiled(space)
+    walk = make_walk(walk)
+    compiled = walk.compiled(space)
     _check_fit(space, chains)
+    check_start = getattr(walk, 'check_start', None)
+    if check_start is not None:
+        for point in space.from_kernel(chains.points):
+            check_start(point)
     after = Chains(*(array.copy() for array in vars(chains).values()))
-    draws = np.empty((len(after.points), n_draws, space.dim))
+    draws = np.empty((len(after.points), n_draws, space.kernel_dim))
 
     def run(k: int) -> None:
         run_chain(space, compiled, after.chain(k), thin, draws[k])
@@ -290,8 +301,8 @@ def _check_starts(space: Space, start: ArrayLike) -> Floats:
 def _check_fit(space: Space, chains: Chains) -> None:
     """Raise RequestError for chains whose arrays have the shapes of another space."""
     wanted = {
-        'points': space.dim,
-        'memory': memory_size(space.data, space.dim),
+        'points': space.kernel_dim,
+        'memory': memory_size(space.data, space.kernel_dim),
         'streams': 4,
         'counts': N_COUNTS,
     }

@@ -1,48 +1,33 @@
 """
-Random walks: how a chain takes one step.
+Random walks: what a chain draws from, and by which steps.
 
 A walk is a frozen dataclass whose fields are its settings. ``compiled(space)`` turns it into a
 NamedTuple of numbers in the kernel frame, and the type of that NamedTuple selects the kernel of
-its step::
+its step (modules ``steps`` and ``density_steps``). To add a walk, write a dataclass, a NamedTuple,
+a kernel registered for that NamedTuple, and an entry in ``_WALKS``.
 
-    take_step(walk, space, cache, u, rng, counts) -> moved
-
-The kernel may change the chain's position in ``cache``, and returns whether the chain moved. The
-result depends on the arguments only; module ``chains`` calls the kernel in a loop, and counts
-steps and moves. To add a walk, write a dataclass, a NamedTuple, a kernel registered for that
-NamedTuple, and an entry in ``_WALKS``.
-
-The uniform distribution on the component of the start is stationary for every walk here, and every
-step is reversible: its transition density is symmetric (paper, Section 1; for the ball walk:
-Lovasz and Simonovits, "Random walks in a convex body and an improved volume algorithm", 1993).
+Every walk here keeps the uniform distribution on the component of the start, or the density that
+it is given there. Every step but an overrelaxed one is reversible: its transition density is
+symmetric (paper, Section 1; for the ball walk: Lovasz and Simonovits, "Random walks in a convex
+body and an improved volume algorithm", 1993).
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 import math
-from typing import Any, NamedTuple, Protocol
+from typing import Any, Protocol
 
 from hnr_planner.core.checks import check_choice, check_positive
 from hnr_planner.core.errors import RequestError
-from hnr_planner.core.kernels.dispatch import dispatched
-from hnr_planner.core.kernels.kernel import inlined, kernel
-from hnr_planner.core.kernels.streams import uniform
-from hnr_planner.core.sampling.draws import draw_in_ball, REDRAWS_MAX
-from hnr_planner.core.spaces.chain_cache import (
-    chord_cached,
-    move_along,
-    move_if_free,
-    NO_AXIS,
-    refresh,
+from hnr_planner.core.sampling.density_steps import CompiledDensity
+from hnr_planner.core.sampling.steps import (
+    BallStep,
+    CoordinateHitAndRunStep,
+    HitAndRunStep,
+    OverrelaxedStep,
 )
-from hnr_planner.core.spaces.lines import check_straight_lines, draw_direction
-from hnr_planner.core.spaces.primitives import first_exit
+from hnr_planner.core.spaces.lines import check_straight_lines
 from hnr_planner.core.spaces.space import Space
-
-#: Counters of a chain, by column: steps taken; steps that moved it; chords shorter than the
-#: space's zero length; draws rejected because they rounded onto the boundary; steps since the last
-#: move.
-STEPS, MOVES, ZERO_CHORDS, REDRAWS, STILL = range(5)
-N_COUNTS = 5
 
 
 class Walk(Protocol):
@@ -59,28 +44,75 @@ class Walk(Protocol):
 @dataclass(frozen=True)
 class HitAndRunWalk:
     """
-    Hit-and-Run: draw a uniform direction, then a uniform point of the chord along it.
+    Hit-and-Run: draw a uniform direction, then a point of the chord along it.
 
-    The chord is the free segment through the chain's point (paper, Section 1).
+    The chord is the free segment through the chain's point (paper, Section 1). The point is
+    uniform, or drawn from a density on the chord: exactly for a ``Gaussian`` and an
+    ``Exponential``, by slice sampling for any other.
+
+    Attributes
+    ----------
+    log_density : callable, optional
+        The logarithm of a density, up to a constant: a function of a point (dim,) in the caller's
+        frame, compiled by numba or in Python, whose values are below inf. It is -inf where there
+        is no density. A function in Python is called from many threads, one at a time.
+
+    Raises
+    ------
+    RequestError
+        When the log-density is not callable.
+
     """
+
+    log_density: Callable[[Any], float] | None = None
 
     name = 'hit_and_run'
 
+    def __post_init__(self) -> None:
+        density = None if self.log_density is None else CompiledDensity(self.log_density)
+        object.__setattr__(self, '_density', density)
+
+    def __reduce__(self) -> Any:
+        """Pickle the log-density alone: its compiled form has an address of this process."""
+        return type(self), (self.log_density,)
+
     def compiled(self, space: Space) -> Any:
         """Return the settings for the kernel, lengths in the kernel frame."""
-        return HitAndRunStep(space.zero_length)
+        density: CompiledDensity | None = self._density  # type: ignore[attr-defined]
+        return HitAndRunStep(space.zero_length) if density is None else density.step(space)
+
+    def check_start(self, point: Any) -> None:
+        """Raise RequestError where the density is not above 0 at ``point`` (dim,)."""
+        density: CompiledDensity | None = self._density  # type: ignore[attr-defined]
+        if density is not None:
+            density.check_start(point)
 
 
 @dataclass(frozen=True)
 class CoordinateHitAndRunWalk:
-    """Coordinate Hit-and-Run: draw a uniform axis, then a uniform point of the chord along it."""
+    """
+    Coordinate Hit-and-Run: draw a uniform axis, then a uniform point of the chord along it.
+
+    Attributes
+    ----------
+    overrelaxed : bool
+        Whether to take the axes in turn, and to move in four of five steps to the mirror image of
+        the point on its chord instead of to a uniform point. Both suppress the random walk in
+        long directions (Adler, "Over-relaxation method for the Monte Carlo evaluation of the
+        partition function for multiquadratic actions", 1981): it takes several times fewer steps
+        to an independent draw, and the chain is no longer reversible.
+
+    """
+
+    overrelaxed: bool = False
 
     name = 'coordinate_hit_and_run'
 
     def compiled(self, space: Space) -> Any:
         """Return the settings for the kernel, lengths in the kernel frame."""
         check_straight_lines(space, f'the walk {self.name}')
-        return CoordinateHitAndRunStep(space.zero_length)
+        step = OverrelaxedStep if self.overrelaxed else CoordinateHitAndRunStep
+        return step(space.zero_length)
 
 
 @dataclass(frozen=True)
@@ -104,7 +136,7 @@ class BallWalk:
     Raises
     ------
     RequestError
-        When the radius is not above 0.
+        When the radius is not above 0, or the space does not keep lengths.
 
     """
 
@@ -123,6 +155,11 @@ class BallWalk:
         if self.radius is None:
             radius = space.typical_clearance * (space.dim + 1) / math.sqrt(space.dim)
         else:
+            if not space.is_rigid:
+                raise RequestError(
+                    f'a radius has no meaning in {space!r}, whose walks run in coordinates of '
+                    f'their own; leave it out'
+                )
             radius = float(self.radius) / space.scale
         return BallStep(radius, bool(self.segment_visible))
 
@@ -150,127 +187,3 @@ def make_walk(walk: str | Walk) -> Walk:
     if isinstance(walk, type) or not callable(getattr(walk, 'compiled', None)):
         raise RequestError(f'walk must be one of {", ".join(WALKS)}, or a walk, got {walk!r}')
     return walk
-
-
-class HitAndRunStep(NamedTuple):
-    """Hit-and-Run for kernels: chords shorter than ``zero_length`` count as zero chords."""
-
-    zero_length: float
-
-
-class CoordinateHitAndRunStep(NamedTuple):
-    """Coordinate Hit-and-Run for kernels: shorter chords than ``zero_length`` are zero chords."""
-
-    zero_length: float
-
-
-class BallStep(NamedTuple):
-    """Ball walk for kernels: radius in the kernel frame, and whether segments must be free."""
-
-    radius: float
-    segment_visible: bool
-
-
-@dispatched
-@inlined
-def take_step(walk: Any, space: Any, cache: Any, u: Any, rng: Any, counts: Any) -> bool:
-    """
-    Take one step of a walk, and return whether the chain moved.
-
-    Parameters
-    ----------
-    walk : NamedTuple
-        Compiled settings, whose type selects the kernel.
-    space : NamedTuple
-        Compiled space.
-    cache : ChainCache or the space's own
-        Position of the chain in the kernel frame, and what the space caches for it. The step
-        changes both when the chain moves.
-    u : (dim,)
-        Work array for the direction; zero before and after steps of coordinate walks.
-    rng : (4,) uint64
-        Random stream of the chain.
-    counts : (N_COUNTS,) int64
-        Counters; the step adds to ``ZERO_CHORDS`` and ``REDRAWS`` only.
-
-    """
-    raise NotImplementedError
-
-
-@take_step.register(HitAndRunStep)
-@inlined
-def _hit_and_run(walk, space, cache, u, rng, counts):
-    """Move to a uniform point of the chord in a uniform direction; return whether it moved."""
-    draw_direction(space, rng, u)
-    return _move_on_chord(walk.zero_length, space, cache, u, NO_AXIS, rng, counts)
-
-
-@take_step.register(CoordinateHitAndRunStep)
-@inlined
-def _coordinate_hit_and_run(walk, space, cache, u, rng, counts):
-    """Move to a uniform point of the chord along a uniform axis; return whether it moved."""
-    axis = math.floor(uniform(rng) * len(u))
-    u[axis] = 1.0
-    moved = _move_on_chord(walk.zero_length, space, cache, u, axis, rng, counts)
-    u[axis] = 0.0
-    return moved
-
-
-@take_step.register(BallStep)
-@inlined
-def _ball_walk(walk, space, cache, u, rng, counts):
-    """
-    Move to a uniform point of the ball if it is free; return whether the chain moved.
-
-    With ``walk.segment_visible`` the segment to the point must be free too.
-    """
-    draw_in_ball(walk.radius, rng, u)
-    for i in range(len(u)):
-        cache.y[i] = cache.x[i] + u[i]
-    if walk.segment_visible and not first_exit(space, cache.x, u, 0.0, 1.0) > 1.0:
-        return False
-    if not move_if_free(space, cache):
-        return False
-    refresh(space, cache)
-    return True
-
-
-@inlined
-def _move_on_chord(zero_length, space, cache, u, axis, rng, counts):
-    """Move to a uniform point of the chord along ``u``; return whether the chain moved."""
-    lower, upper = chord_cached(space, cache, u, axis)
-    if upper - lower >= zero_length:
-        return _move_between(space, cache, u, axis, lower, upper, rng, counts)
-    return _move_on_zero_chord(space, cache, u, axis, lower, upper, rng, counts)
-
-
-@inlined
-def _move_between(space, cache, u, axis, lower, upper, rng, counts):
-    """
-    Move by ``s u``, with s uniform in (lower, upper); return whether the chain moved.
-
-    A draw on an end, or whose point is not free, counts as a redraw and is repeated; after
-    ``REDRAWS_MAX`` redraws the chain stays.
-    """
-    for _ in range(REDRAWS_MAX):
-        s = lower + (upper - lower) * uniform(rng)
-        if lower < s < upper and move_along(space, cache, u, axis, s):
-            return True
-        counts[REDRAWS] += 1
-    return False
-
-
-@kernel
-def _move_on_zero_chord(space, cache, u, axis, lower, upper, rng, counts):
-    """
-    Move on a chord shorter than the zero length; return whether the position changed.
-
-    Such a chord has few floating-point numbers, so that the point drawn may equal the old one.
-    """
-    counts[ZERO_CHORDS] += 1
-    before = cache.x.copy()
-    _move_between(space, cache, u, axis, lower, upper, rng, counts)
-    for i in range(len(before)):
-        if cache.x[i] != before[i]:
-            return True
-    return False

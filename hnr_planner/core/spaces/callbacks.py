@@ -32,14 +32,51 @@ _raised = threading.local()
 
 class OracleError(HnrError):
     """
-    A function of the user that a space calls has raised an exception.
+    A function of the user that a space or a walk calls has raised an exception.
 
     That exception is the ``__cause__`` of this error.
     """
 
     def __init__(self) -> None:
         self.__cause__ = getattr(_raised, 'error', None)
-        super().__init__(f'the function of a space raised {self.__cause__!r}')
+        super().__init__(f'the function of a space or of a density raised {self.__cause__!r}')
+
+
+def vector_callback(function: Callable[..., Any]) -> Any:
+    """
+    Return a function from arrays (dim,) to arrays (dim,) as a C function, for ``ask``.
+
+    Keep a reference to the returned object for as long as its ``address`` is used. The function
+    may be compiled by numba or not.
+    """
+    if not isinstance(function, Dispatcher):
+        return _python_vector(function)
+
+    def answer(numbers, count, result):
+        image = function(carray(numbers, (count,)))
+        for i in range(count):
+            result[i] = image[i]
+        return 0
+
+    return cfunc(_NATIVE)(answer)
+
+
+def _python_vector(function: Callable[..., Any]) -> Any:
+    """Return a function in Python from arrays to arrays as a C function."""
+
+    def answer(numbers: int, count: int, result: int) -> int:
+        try:
+            point = np.frombuffer(ctypes.string_at(numbers, _FLOAT * count))
+            image = np.array(function(point), dtype=np.float64)
+            if image.shape != (count,):
+                raise ValueError(f'the image must have shape ({count},), got {image.shape}')
+            ctypes.memmove(result, image.ctypes.data, _FLOAT * count)
+        except BaseException as error:
+            _raised.error = error
+            return FAILED
+        return 0
+
+    return _C_TYPE(answer)
 
 
 def callback(function: Callable[..., Any], n_arrays: int) -> Any:
@@ -105,10 +142,10 @@ def _native(function: Dispatcher, n_arrays: int) -> Any:
 
 def ask(at: int, numbers: Any, result: Any) -> int:
     """
-    Call the function at address ``at`` and write its result to ``result`` (1,).
+    Call the function at address ``at`` and write its result to ``result``.
 
-    ``numbers`` (n,) holds its arrays (dim,) one after another. Return 0, or ``FAILED``, -1, when
-    the function raised an exception.
+    That is (1,), or (dim,) for a function to arrays. ``numbers`` (n,) holds the function's arrays
+    (dim,) one after another. Return 0, or ``FAILED``, -1, when the function raised an exception.
     """
     return _C_TYPE(at)(numbers.ctypes.data, len(numbers), result.ctypes.data)
 

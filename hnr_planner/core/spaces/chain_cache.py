@@ -68,11 +68,32 @@ def refresh(space: CompiledSpace, cache: Any) -> None:
 
 @dispatched
 @inlined
+def count_axes(space: CompiledSpace, dim: int) -> int:
+    """Return the number of directions along which coordinate walks move: ``dim`` by default."""
+    return dim
+
+
+@dispatched
+@inlined
+def set_axis(space: CompiledSpace, u: Floats, axis: int) -> None:
+    """Write the direction ``axis``, below ``count_axes``, into ``u`` (dim,), which is zero."""
+    u[axis] = 1.0
+
+
+@dispatched
+@inlined
+def clear_axis(space: CompiledSpace, u: Floats, axis: int) -> None:
+    """Set ``u`` (dim,), which is the direction ``axis``, to zero."""
+    u[axis] = 0.0
+
+
+@dispatched
+@inlined
 def chord_cached(space: CompiledSpace, cache: Any, u: Floats, axis: int) -> tuple[float, float]:
     """
     Return the chord through the chain's point along ``u`` (dim,): parameters (lower, upper).
 
-    ``axis`` is the index of the axis along which ``u`` is the unit vector, or ``NO_AXIS``, -1.
+    ``axis`` is the index of the axis that ``set_axis`` has written to ``u``, or ``NO_AXIS``, -1.
     """
     for i in range(len(u)):
         cache.back[i] = -u[i]

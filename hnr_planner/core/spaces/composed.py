@@ -12,7 +12,7 @@ def check_members(members: Iterable[Any]) -> tuple[Space, ...]:
     """
     Return the members as a tuple, or raise SpaceError.
 
-    There has to be one, and all have to be spaces with straight lines.
+    There has to be one, and all have to be spaces with an inside and with straight lines.
     """
     spaces = tuple(members)
     if not spaces:
@@ -22,6 +22,11 @@ def check_members(members: Iterable[Any]) -> tuple[Space, ...]:
             raise SpaceError(f'a member must be a space, got {member!r}')
         if not member.has_straight_lines:
             raise SpaceError(f'a member must have straight lines, got {member!r}')
+        if member.kernel_dim < member.dim:
+            raise SpaceError(
+                f'a member must have an inside in its {member.dim} dimensions, got {member!r}, '
+                f'which can only be sampled'
+            )
     return spaces
 
 

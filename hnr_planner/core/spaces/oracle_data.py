@@ -1,16 +1,15 @@
 """
 Compiled spaces that call functions of the user: chords by search, or from a function.
 
-A space without a chord function is searched along a line: a point is tested at every
-``resolution`` along the line, and a change of the result is located by bisection.
+A space without a chord function is searched along lines (module ``search``), in steps of
+``resolution``.
 """
 
 from collections.abc import Callable
-import math
 from typing import Any, NamedTuple
 
 from hnr_planner.core.checks import Floats
-from hnr_planner.core.kernels.kernel import kernel
+from hnr_planner.core.kernels.kernel import inlined, kernel
 from hnr_planner.core.lengths import norm
 from hnr_planner.core.spaces.bounds import box_span
 from hnr_planner.core.spaces.callbacks import address, ask, callback, OracleError
@@ -21,6 +20,7 @@ from hnr_planner.core.spaces.primitives import (
     segment_is_free,
     touches,
 )
+from hnr_planner.core.spaces.search import entry_by_search, exit_by_search, is_in, work_size
 import numpy as np
 
 
@@ -124,13 +124,9 @@ def _first_exit(oracle, x, u, t, horizon):
     _, last = box_span(oracle.lower, oracle.upper, x, u)
     if oracle.chord != 0:
         return min(t + _ask_chord(oracle, x, u, t), last)
-    step, before = oracle.resolution / norm(u), t
-    while before <= horizon:
-        s = min(before + step, last)
-        if s == last or not _is_in(oracle, x, u, s, work):
-            return _bisect(oracle, x, u, before, s, work)
-        before = s
-    return before
+    length = norm(u)
+    step, closeness = oracle.resolution / length, oracle.closeness / length
+    return exit_by_search(oracle, x, u, t, horizon, last, step, closeness)
 
 
 @first_entry.register(OracleData)
@@ -141,13 +137,9 @@ def _first_entry(oracle, x, u, t):
     if _is_in(oracle, x, u, t, work):
         return t
     first, last = box_span(oracle.lower, oracle.upper, x, u)
-    step, before = oracle.resolution / norm(u), max(t, first)
-    while before < last:
-        s = min(before + step, last)
-        if _is_in(oracle, x, u, s, work):
-            return _bisect(oracle, x, u, before, s, work)
-        before = s
-    return math.inf
+    length = norm(u)
+    step, closeness = oracle.resolution / length, oracle.closeness / length
+    return entry_by_search(oracle, x, u, max(t, first), last, step, closeness)
 
 
 @segment_is_free.register(OracleData)
@@ -173,26 +165,14 @@ def _segment_is_free(oracle, a, b):
     return not u.any() or _first_exit(oracle, a, u, 0.0, 1.0) > 1.0
 
 
-@kernel
-def _bisect(oracle, x, u, before, after, work):
-    """
-    Return a parameter just after the change of membership between ``before`` and ``after``.
-
-    The change is located by bisection, to a distance of ``closeness``.
-    """
-    was_in = _is_in(oracle, x, u, before, work)
-    closeness = oracle.closeness / norm(u)
-    while after - before > closeness:
-        middle = before + (after - before) / 2.0
-        if not before < middle < after:
-            break
-        if _is_in(oracle, x, u, middle, work) == was_in:
-            before = middle
-        else:
-            after = middle
-    return after
+@work_size.register(OracleData)
+@inlined
+def _work_size(oracle, dim):
+    """Return the number of floats for a point and the result."""
+    return dim + 1
 
 
+@is_in.register(OracleData)
 @kernel
 def _is_in(oracle, x, u, s, work):
     """

@@ -25,7 +25,7 @@ from hnr_planner.core.spaces.primitives import (
     first_blocked_segment,
     segment_is_free,
 )
-from hnr_planner.core.spaces.transformed import shifted
+from hnr_planner.core.spaces.transformed import shifted, TransformedData
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -140,6 +140,15 @@ class Space(ABC):
         """
         return shifted(self.data, self._kernel_origin, origin)
 
+    def transformed(self, matrix: Floats, origin: Floats) -> CompiledSpace:
+        """
+        Return the compiled space in coordinates y with ``x = origin + matrix y``, x kernel frame.
+
+        ``matrix`` (kernel_dim, kernel_dim) is invertible. The result may be smaller than the space
+        by as much as the map rounds.
+        """
+        return TransformedData(self.data, np.ascontiguousarray(matrix), origin.copy())
+
     @property
     def compiled(self) -> CompiledSpace:
         """The compiled space in the caller's frame."""
@@ -153,6 +162,16 @@ class Space(ABC):
         is by default: a space overrides this method if it can compute the answer.
         """
         return False
+
+    @property
+    def is_rigid(self) -> bool:
+        """Whether lengths in the kernel frame, times ``scale``, are those of the caller's."""
+        return True
+
+    @property
+    def kernel_dim(self) -> int:
+        """Dimension of the kernel frame: ``dim``, unless equations hold for all points."""
+        return self.dim
 
     @property
     def scale(self) -> float:

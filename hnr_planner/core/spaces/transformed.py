@@ -71,7 +71,7 @@ def _touches(transformed, x):
 def _first_exit(transformed, x, u, t, horizon):
     """Return the first parameter from ``t`` on at which the converted line leaves the space."""
     return first_exit(
-        transformed.space, _point(transformed, x), _product(transformed.matrix, u), t, horizon
+        transformed.space, _point(transformed, x), product(transformed.matrix, u), t, horizon
     )
 
 
@@ -80,7 +80,7 @@ def _first_exit(transformed, x, u, t, horizon):
 def _first_entry(transformed, x, u, t):
     """Return the first parameter from ``t`` on at which the converted line touches the space."""
     return first_entry(
-        transformed.space, _point(transformed, x), _product(transformed.matrix, u), t
+        transformed.space, _point(transformed, x), product(transformed.matrix, u), t
     )
 
 
@@ -94,14 +94,14 @@ def _component(transformed, x):
 @kernel
 def _point(transformed, x):
     """Return a point ``x`` (dim,) of the other frame in the own frame of the space."""
-    y = _product(transformed.matrix, x)
+    y = product(transformed.matrix, x)
     for i in range(len(y)):
         y[i] += transformed.offset[i]
     return y
 
 
 @kernel
-def _product(matrix, u):
+def product(matrix, u):
     """Return the product of a matrix (dim, dim) and a vector ``u`` (dim,), in a fixed order."""
     v = np.zeros(len(matrix))
     for i in range(len(matrix)):

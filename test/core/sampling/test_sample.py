@@ -1,9 +1,12 @@
 """Draws: inside, repeatable, counted as asked, and refused where they cannot be."""
 
 from itertools import pairwise
+import pickle
 from test.laws import maps
+from test.laws.spaces import SPACES
 
-from hnr_planner.core import begin_chains, GridSpace, RequestError, sample, WALKS
+from hnr_planner.core import begin_chains, BoxSpace, GridSpace, RequestError, sample, WALKS
+import joblib
 import numpy as np
 import pytest
 
@@ -88,3 +91,23 @@ def test_a_malformed_argument_is_refused(arguments, words: str):
     request = {'start': START, 'n_draws': 10, **arguments}
     with pytest.raises(RequestError, match=words):
         sample(SPACE, **request)
+
+
+@pytest.mark.parametrize('name', SPACES)
+def test_every_space_can_be_pickled_for_other_processes(name):
+    space = SPACES[name]()
+    again = pickle.loads(pickle.dumps(space))
+    lower, upper = space.bounds
+    points = np.random.default_rng(1).uniform(lower, upper, (50, space.dim))
+    np.testing.assert_array_equal(again.contains(points), space.contains(points))
+
+
+def test_jobs_of_joblib_give_the_same_draws():
+    space = BoxSpace((0.0, 0.0), (1.0, 2.0))
+    options = {'n_chains': 3, 'burn_in': 7, 'thin': 2, 'seed': 1}
+    expected = sample(space, (0.5, 0.5), 20, **options)
+    with joblib.parallel_config(backend='threading'):
+        draws = sample(space, (0.5, 0.5), 20, n_jobs=2, **options)
+    np.testing.assert_array_equal(draws, expected)
+    draws = sample(space, (0.5, 0.5), 20, n_jobs=2, **options)  # in processes
+    np.testing.assert_array_equal(draws, expected)

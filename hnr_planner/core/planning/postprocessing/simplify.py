@@ -14,6 +14,7 @@ from hnr_planner.core.kernels.streams import Stream, stream
 from hnr_planner.core.lengths import path_length
 from hnr_planner.core.planning.homology import Islands, NO_ISLANDS
 from hnr_planner.core.planning.limits import Budget
+from hnr_planner.core.planning.planner import check_rigid
 from hnr_planner.core.planning.postprocessing.shortcuts import join, pull, relax, skip
 from hnr_planner.core.spaces.lines import check_straight_lines
 from hnr_planner.core.spaces.space import Space
@@ -81,6 +82,7 @@ def simplify(
 def check_path(space: Space, path: ArrayLike) -> Floats:
     """Return ``path`` (m, dim) as a fresh array of free segments, or raise RequestError."""
     check_straight_lines(space, 'simplify')
+    check_rigid(space)
     points = check_points('path', path, space.dim)
     if points.ndim != 2 or len(points) < 2:
         raise RequestError(f'path must have at least two points, got shape {points.shape}')

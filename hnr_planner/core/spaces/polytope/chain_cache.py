@@ -16,6 +16,8 @@ from hnr_planner.core.checks import Floats
 from hnr_planner.core.kernels.kernel import inlined, kernel
 from hnr_planner.core.spaces.chain_cache import (
     chord_cached,
+    clear_axis,
+    count_axes,
     memory_size,
     move_along,
     move_if_free,
@@ -23,6 +25,7 @@ from hnr_planner.core.spaces.chain_cache import (
     open_cache,
     REFRESH,
     refresh,
+    set_axis,
 )
 from hnr_planner.core.spaces.polytope.planes import LONG, PolytopeData
 import numpy as np
@@ -30,6 +33,8 @@ from numpy.typing import NDArray
 
 #: Least distance: computed distances that are less are replaced by this one, so that none is 0.
 LEAST = float(np.finfo(np.float64).tiny)
+#: Largest whole numbers that floats are compared as.
+_MOST_SIGNED, _MOST_UNSIGNED = np.int64(2**63 - 1), np.uint64(2**64 - 1)
 
 
 class PolytopeCache(NamedTuple):
@@ -94,23 +99,50 @@ def _refresh(polytope, cache):
         cache.slacks[i] = max(polytope.offsets[i] - cache.slacks[i], LEAST)
 
 
+@count_axes.register(PolytopeData)
+@inlined
+def _count_axes(polytope, dim):
+    """Return the number of directions of coordinate walks."""
+    return len(polytope.axes) if len(polytope.axes) > 0 else dim
+
+
+@set_axis.register(PolytopeData)
+@inlined
+def _set_axis(polytope, u, axis):
+    """Write the direction ``axis`` of coordinate walks into ``u`` (dim,), which is zero."""
+    if len(polytope.axes) == 0:
+        u[axis] = 1.0
+        return
+    for i in range(len(u)):
+        u[i] = polytope.axes[axis, i]
+
+
+@clear_axis.register(PolytopeData)
+@inlined
+def _clear_axis(polytope, u, axis):
+    """Set ``u`` (dim,), which is the direction ``axis``, to zero."""
+    if len(polytope.axes) == 0:
+        u[axis] = 0.0
+        return
+    for i in range(len(u)):
+        u[i] = 0.0
+
+
 @chord_cached.register(PolytopeData)
 @inlined
 def _chord_cached(polytope, cache, u, axis):
     """
     Return the chord (lower, upper), from the distances and the rates along ``u`` (dim,).
 
-    The rates are stored for the move that follows, except along an axis in the sparse layout.
+    The rates are stored for the move that follows, except along an axis.
     """
-    layout = polytope.layout
+    layout = polytope.along_axes
     if axis == NO_AXIS:
-        _set_rates(layout, u, cache.rates)
-    elif _is_dense(layout):
-        for i in range(len(cache.rates)):
-            cache.rates[i] = layout.dense[axis, i]
-    else:
-        return _chord_along_sparse_axis(layout, axis, cache.slacks)
-    return _chord_at_rates(cache)
+        _set_rates(polytope.layout, u, cache.rates)
+        return _chord_at_rates(cache)
+    if _is_dense(layout):
+        return _chord_along_dense_axis(layout, axis, cache)
+    return _chord_along_sparse_axis(layout, axis, cache.slacks)
 
 
 @move_along.register(PolytopeData)
@@ -121,14 +153,16 @@ def _move_along(polytope, cache, u, axis, s):
 
     If a distance becomes ``doubt`` or less, the end is checked from the point itself.
     """
-    layout = polytope.layout
-    if axis == NO_AXIS or _is_dense(layout):
+    layout = polytope.along_axes
+    if axis == NO_AXIS:
         n_doubtful = _move_at_rates(cache, s, polytope.doubt)
+    elif _is_dense(layout):
+        n_doubtful = _move_along_dense_axis(layout, axis, cache.slacks, s, polytope.doubt)
     else:
         n_doubtful = _move_along_sparse_axis(layout, axis, cache.slacks, s, polytope.doubt)
     if n_doubtful > 0:
         return _move_and_refresh(polytope, cache, u, s)
-    if axis == NO_AXIS:
+    if axis == NO_AXIS or len(polytope.axes) > 0:
         for i in range(len(u)):
             cache.x[i] += s * u[i]
     else:
@@ -207,6 +241,41 @@ def _move_at_rates(cache, s, doubt):
     for i in range(len(cache.slacks)):
         slack = cache.slacks[i] - s * cache.rates[i]
         cache.slacks[i] = slack
+        n_doubtful += not slack > doubt
+    return n_doubtful
+
+
+@inlined
+def _chord_along_dense_axis(layout, axis, cache):
+    """
+    Return the chord (lower, upper) along an axis, from the inverses of all rates.
+
+    The parameters at which the line meets planes are compared by their bits, as the ratios of
+    ``_chord_at_rates`` are: here the smallest above 0 and the largest below 0 are wanted.
+    """
+    for i in range(len(cache.slacks)):
+        cache.ratios[i] = cache.slacks[i] * layout.dense_inverses[axis, i]
+    backwards, forwards = _MOST_SIGNED, _MOST_UNSIGNED
+    for i in range(len(cache.slacks)):
+        backwards = min(backwards, cache.ratios_signed[i])
+        forwards = min(forwards, cache.ratios_unsigned[i])
+    cache.ratios_signed[0] = backwards
+    lower = cache.ratios[0]
+    cache.ratios_unsigned[0] = forwards
+    return lower, cache.ratios[0]
+
+
+@inlined
+def _move_along_dense_axis(layout, axis, slacks, s, doubt):
+    """
+    Update every distance for a move by ``s`` along an axis.
+
+    Return how many of them become ``doubt`` or less.
+    """
+    n_doubtful = 0
+    for i in range(len(slacks)):
+        slack = slacks[i] - s * layout.dense[axis, i]
+        slacks[i] = slack
         n_doubtful += not slack > doubt
     return n_doubtful
 

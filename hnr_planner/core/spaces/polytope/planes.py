@@ -23,6 +23,8 @@ from numpy.typing import NDArray
 LONG = 32
 #: A matrix is stored densely only if at least one in this many of its numbers is not zero.
 SPARSE = 4
+#: Products of unit vectors below this are rounding errors of 0.
+SPURIOUS = 1e-13
 
 
 class Layout(NamedTuple):
@@ -31,9 +33,9 @@ class Layout(NamedTuple):
 
     Attributes
     ----------
-    dense : (dim, m)
-        The transposed matrix; (0, 0) in the sparse layout, which has the other fields. They are
-        empty in the dense layout.
+    dense, dense_inverses : (dim, m)
+        The transposed matrix, and the inverses of its numbers, inf for 0; (0, 0) in the sparse
+        layout, which has the other fields. They are empty in the dense layout.
     column_starts : (dim, 3) uint64
         Indices in ``rows``, ``values`` and ``inverses`` at which the positive numbers of each
         column begin, at which the negative ones do, and at which they end.
@@ -48,6 +50,7 @@ class Layout(NamedTuple):
     """
 
     dense: Floats
+    dense_inverses: Floats
     column_starts: NDArray[np.uint64]
     rows: NDArray[np.uint64]
     values: Floats
@@ -69,6 +72,11 @@ class PolytopeData(NamedTuple):
         Right-hand sides of the inequalities ``normals x < offsets``, kernel frame.
     layout : Layout
         The normals as walks read them.
+    axes : (k, dim)
+        Directions of coordinate walks; (0, dim) for the axes of the frame.
+    along_axes : Layout
+        The products ``normals axes^T`` (m, k) as coordinate walks read them: ``layout`` itself
+        for the axes of the frame.
     doubt : float
         Bound on the rounding error of a distance to a plane that a walk updates.
 
@@ -77,6 +85,8 @@ class PolytopeData(NamedTuple):
     normals: Floats
     offsets: Floats
     layout: Layout
+    axes: Floats
+    along_axes: Layout
     doubt: float
 
 
@@ -91,7 +101,10 @@ def layout_of(matrix: Floats) -> Layout:
     if m >= LONG and np.count_nonzero(matrix) * SPARSE >= matrix.size:
         none, empty = np.empty(0, np.uint64), np.empty(0)
         starts = np.empty((0, 3), np.uint64)
-        return Layout(matrix.T.copy(), starts, none, empty, empty, none, none, empty)
+        dense = matrix.T.copy()
+        inverses = np.full_like(dense, np.inf)
+        np.divide(1.0, dense, out=inverses, where=dense != 0.0)
+        return Layout(dense, inverses, starts, none, empty, empty, none, none, empty)
     by_sign = [np.flatnonzero(sign) for column in matrix.T for sign in (column > 0, column < 0)]
     ends = np.cumsum([0, *map(len, by_sign)])
     column_starts = np.stack([ends[:-2:2], ends[1:-1:2], ends[2::2]], axis=1)
@@ -99,6 +112,7 @@ def layout_of(matrix: Floats) -> Layout:
     values = matrix[rows, np.repeat(np.arange(dim), column_starts[:, 2] - column_starts[:, 0])]
     at_row, columns = np.nonzero(matrix)
     return Layout(
+        np.empty((0, 0)),
         np.empty((0, 0)),
         column_starts.astype(np.uint64),
         rows.astype(np.uint64),
@@ -108,6 +122,24 @@ def layout_of(matrix: Floats) -> Layout:
         columns.astype(np.uint64),
         matrix[at_row, columns],
     )
+
+
+def compiled_polytope(
+    normals: Floats, offsets: Floats, doubt: float, axes: Floats | None = None
+) -> PolytopeData:
+    """
+    Return the compiled polytope ``normals x < offsets``.
+
+    ``axes`` (k, dim) are directions of coordinate walks, by default the axes of the frame. Their
+    products with the normals that are rounding errors of 0 count as 0.
+    """
+    layout = layout_of(normals)
+    if axes is None:
+        none = np.empty((0, normals.shape[1]))
+        return PolytopeData(normals, offsets, layout, none, layout, doubt)
+    products = normals @ axes.T
+    products[np.abs(products) < SPURIOUS] = 0.0
+    return PolytopeData(normals, offsets, layout, axes, layout_of(products), doubt)
 
 
 first_exit_on_curve.register(PolytopeData)(first_exit_between_surfaces)

@@ -44,11 +44,6 @@ def test_a_row_is_named_as_the_caller_counts_it():
 @pytest.mark.parametrize(
     ('a', 'b', 'reason'),
     [
-        (
-            np.vstack([SIMPLEX, -np.ones(3)]),
-            [*RIGHT, -1.0],
-            r'is flat: rows 3, 4 of .* x0 \+ N y',
-        ),
         (BOX, [1.0, 1.0, -1.5, 0.0], 'no point holds all of a x <= b: rows 0, 2 of a'),
         (np.vstack([BOX, np.zeros(2)]), [1, 1, 1, 1, 0], 'row 4 says 0 < 0, which no point holds'),
         (BOX, [1.0, 1.0, -np.inf, 0.0], r'row 2 says a\[2\] x < -inf, which no point holds'),

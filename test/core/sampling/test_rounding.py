@@ -1,0 +1,191 @@
+"""
+Rounded spaces, and the overrelaxed walk that is fast in them, keep the uniform law.
+
+Each statistical test moves N exact points by steps with a fixed seed, and compares p-values with
+ALPHA: with fresh seeds, one run in a hundred thousand would fail. The mutants are steps that are
+wrong in plausible ways, and fail the same test.
+"""
+
+from typing import NamedTuple
+
+from hnr_planner.core import (
+    BallSpace,
+    BoxSpace,
+    CoordinateHitAndRunWalk,
+    diagnose,
+    DifferenceSpace,
+    plan,
+    PolytopeSpace,
+    RequestError,
+    round_space,
+    sample,
+    Space,
+)
+from hnr_planner.core.kernels.kernel import inlined
+from hnr_planner.core.kernels.streams import stream, uniform
+from hnr_planner.core.sampling.chains import new_chain, take_steps
+from hnr_planner.core.sampling.steps import STEPS, take_step
+from hnr_planner.core.spaces.chain_cache import (
+    chord_cached,
+    clear_axis,
+    count_axes,
+    move_along,
+    set_axis,
+)
+import numpy as np
+import pytest
+from scipy import stats
+from scipy.stats import ortho_group
+
+N, N_STEPS, ALPHA = 10_000, 40, 1e-7
+FAST = CoordinateHitAndRunWalk(overrelaxed=True)
+
+
+class MutantStep(NamedTuple):
+    """Overrelaxed steps that mirror not quite, or never draw uniformly on the chord."""
+
+    mirror: float
+    power: float
+
+
+@take_step.register(MutantStep)
+@inlined
+def _mutant(walk, space, cache, u, rng, counts):
+    axis = (counts[STEPS] - 1) % count_axes(space, len(u))
+    set_axis(space, u, axis)
+    lower, upper = chord_cached(space, cache, u, axis)
+    s = walk.mirror * (lower + upper)
+    if uniform(rng) >= 0.8:
+        s = lower + (upper - lower) * uniform(rng) ** walk.power
+    moved = lower < s < upper and move_along(space, cache, u, axis, s)
+    clear_axis(space, u, axis)
+    return moved
+
+
+def simplex(lengths: np.ndarray, turn: np.ndarray | None = None) -> PolytopeSpace:
+    """Return the simplex with these lengths along axes that are turned."""
+    turn = np.eye(len(lengths)) if turn is None else turn
+    rows = np.vstack([-np.diag(1.0 / lengths), 1.0 / lengths]) @ turn
+    return PolytopeSpace(rows, np.append(np.zeros(len(lengths)), 1.0))
+
+
+def barycentric(dim: int, rng: np.random.Generator) -> np.ndarray:
+    """Return uniform points (N, dim) of the standard simplex."""
+    return rng.dirichlet(np.ones(dim + 1), N)[:, :dim]
+
+
+def moved(space: Space, walk: object, points: np.ndarray, seed: int) -> np.ndarray:
+    """Return points (n, dim), caller's frame, after ``N_STEPS`` steps from each."""
+    compiled = walk if isinstance(walk, MutantStep) else walk.compiled(space)
+    ends = space.to_kernel(points)
+    u = np.zeros(space.kernel_dim)
+    rng = stream(seed)
+    for x in ends:
+        chain = new_chain(space, x.copy(), rng)
+        draws = np.empty((1, len(u)))
+        take_steps(space.data, compiled, chain, u, N_STEPS, draws)
+        x[:] = draws[0]
+    return space.from_kernel(ends)
+
+
+def p_value(parts: np.ndarray) -> float:
+    """Return the least p-value of barycentric coordinates: Beta(1, dim), and of their products."""
+    dim = parts.shape[1]
+    every = np.column_stack([parts, 1.0 - parts.sum(axis=1)])
+    singles = [stats.kstest(each, stats.beta(1, dim).cdf).pvalue for each in every.T]
+    sums = every[:, :-1] + every[:, 1:]
+    pairs = [stats.kstest(each, stats.beta(2, dim - 1).cdf).pvalue for each in sums.T]
+    return float(min(singles + pairs))
+
+
+LENGTHS = 10.0 ** np.linspace(-4, 4, 20)
+TURN = ortho_group.rvs(20, random_state=1)
+SETS = {
+    'turned and scaled': (lambda: round_space(simplex(LENGTHS, TURN), seed=1), TURN),
+    'scaled': (lambda: round_space(simplex(LENGTHS), seed=1), np.eye(20)),
+    'as given': (lambda: simplex(LENGTHS), np.eye(20)),
+}
+
+
+@pytest.mark.parametrize('name', SETS)
+@pytest.mark.parametrize(
+    ('walk', 'is_right'),
+    [
+        (FAST, True),
+        (CoordinateHitAndRunWalk(), True),
+        (MutantStep(mirror=1.0, power=1.0), True),
+        (MutantStep(mirror=0.95, power=1.0), False),
+        (MutantStep(mirror=1.0, power=2.0), False),
+    ],
+    ids=['overrelaxed', 'uniform axes', 'no mutant', 'mirror too near', 'not uniform'],
+)
+def test_walks_along_facets_keep_the_uniform_law(name, walk, is_right):
+    build, turn = SETS[name]
+    space, rng = build(), np.random.default_rng(2)
+    ends = moved(space, walk, barycentric(20, rng) * LENGTHS @ turn, seed=3)
+    assert space.contains(ends).all()
+    assert (p_value(ends @ turn.T / LENGTHS) > ALPHA) == is_right
+
+
+def test_means_and_covariances_of_doubly_stochastic_matrices():
+    """
+    Of 3 x 3 matrices: against exact points, by rejection, within 4 standard errors.
+
+    With fresh seeds, one of the 13 numbers would be off by more once in 1200 runs.
+    """
+    a_eq = np.vstack([np.kron(np.eye(3), np.ones(3)), np.kron(np.ones(3), np.eye(3))])
+    space = round_space(PolytopeSpace(a_eq=a_eq, b_eq=np.ones(6), lower=0.0), seed=1)
+    assert 'equations=5' in repr(space)
+    draws = sample(space, np.full(9, 1 / 3), 20_000, n_chains=2, walk=FAST, thin=16, seed=2)
+    assert space.contains(draws.reshape(-1, 9)).all()
+    found = diagnose(draws)
+    assert found.converged
+    rng = np.random.default_rng(3)
+    corners = rng.random((1_000_000, 2, 2))
+    full = np.concatenate([corners, 1.0 - corners.sum(axis=2, keepdims=True)], axis=2)
+    full = np.concatenate([full, 1.0 - full.sum(axis=1, keepdims=True)], axis=1)
+    exact = full[(full > 0.0).all(axis=(1, 2))].reshape(-1, 9)
+    assert np.abs(draws.mean(axis=(0, 1)) - 1 / 3).max() < 4 * found.mcse_mean.max()
+    products = lambda x: x[..., [0, 0, 0, 0]] * x[..., [0, 1, 4, 8]]  # noqa: E731
+    ours, theirs = products(draws), products(exact)
+    error = diagnose(ours).mcse_mean + theirs.std(axis=0) / len(theirs) ** 0.5
+    assert (np.abs(ours.mean(axis=(0, 1)) - theirs.mean(axis=0)) < 4 * error).all()
+
+
+def test_a_set_that_is_not_convex_is_rounded_from_its_draws():
+    """A thin slanted box without a ball: 1000 times as long as wide."""
+    turn = np.array([[0.8, 0.6], [-0.6, 0.8]])
+    rows = np.vstack([np.eye(2), -np.eye(2)]) @ turn
+    thin = DifferenceSpace(PolytopeSpace(rows, [10.0, 0.01] * 2), BallSpace((4.0, 3.0), 0.005))
+    space = round_space(thin, (0.0, 0.0), seed=1)
+    assert space.rounding.ratio < 2.5
+    assert space.rounding.phases > 1
+    draws = sample(space, (0.0, 0.0), 4000, n_chains=2, thin=10, seed=2)
+    assert thin.contains(draws.reshape(-1, 2)).all()
+    assert diagnose(draws).converged
+    along = draws.reshape(-1, 2) @ turn[0]
+    assert abs(along.mean()) < 1.0
+    assert np.ptp(along) > 19.5
+
+
+def test_a_box_keeps_its_axes_and_its_sparse_columns():
+    space = round_space(PolytopeSpace(lower=np.zeros(40), upper=np.logspace(0, 3, 40)), seed=1)
+    assert len(space.data.axes) == 0
+    assert np.count_nonzero(space.data.normals) == 80
+
+
+def test_rounded_spaces_report_and_refuse():
+    base = simplex(np.ones(3))
+    space = round_space(base, seed=1)
+    assert space.rounding.steps > 0
+    assert space.rounding.seconds > 0.0
+    assert repr(space) == 'RoundedSpace(base=PolytopeSpace(dim=3, inequalities=4))'
+    np.testing.assert_array_equal(space.bounds, base.bounds)
+    assert space.chord((0.2, 0.2, 0.2), (1, 0, 0)) == base.chord((0.2, 0.2, 0.2), (1, 0, 0))
+    np.testing.assert_allclose(space.from_kernel(space.to_kernel(base.centre)), base.centre)
+    with pytest.raises(RequestError, match='do not keep lengths'):
+        plan(space, (0.1, 0.1, 0.1), (0.3, 0.3, 0.3), max_iterations=1)
+    with pytest.raises(RequestError, match='start must be given for a BoxSpace'):
+        round_space(BoxSpace((0.0, 0.0), (1.0, 1.0)))
+    with pytest.raises(RequestError, match=r'start \[2.0, 0.0\] is outside the box'):
+        round_space(BoxSpace((0.0, 0.0), (1.0, 1.0)), (2.0, 0.0))
