@@ -9,8 +9,9 @@ from numpy.typing import NDArray
 
 Path = NDArray[np.float64]
 
-#: Time [s] for looking for a shorter path around what blocks the last one, and for shortening it.
-MENDING_TIME = 0.005
+#: Number of further searches for a shorter path around what blocks the last one. The first finds
+#: the shortest; a number, unlike a clock, gives the same path on a busy machine.
+MENDING_SEARCHES = 1
 
 
 def keep_route(
@@ -51,7 +52,7 @@ def keep_route(
             start,
             goal,
             seed=seed,
-            optimize_for=MENDING_TIME,
+            optimize_iterations=MENDING_SEARCHES,
             time_limit=limits.time_left,
             cancel=limits.cancel,
         )
@@ -61,7 +62,7 @@ def keep_route(
         # Shortening would take away the clearance that the last path has.
         if not settings.simplify or settings.clearance > 0.0:
             return path
-        return simplify(space, path, seed=seed, time_limit=MENDING_TIME)
+        return simplify(space, path, seed=seed, time_limit=limits.time_left)
 
     kept = limits.within(
         lambda: with_kept_route(result, last, space, ratio, connect, shorten), None
