@@ -16,7 +16,9 @@ from hnr_planner.core.checks import check_choice
 from hnr_planner.core.kernels.compilation import prepare
 from hnr_planner.core.kernels.modes import Mode, mode_of_thread
 from hnr_planner.core.kernels.needs import Workload
+from hnr_planner.core.kernels.streams import stream
 from hnr_planner.core.kernels.workloads import needs_of
+from hnr_planner.core.planning.batch.order import improve_ring
 from hnr_planner.core.planning.batch.tour import tour
 from hnr_planner.core.planning.limits import Budget
 from hnr_planner.core.planning.plan import plan
@@ -137,8 +139,8 @@ def find_paths() -> None:
                 max_iterations=N_ITERATIONS,
             )
     plan(space, CORNER, OTHER_CORNER, seed=0, alternatives=2, clearance=1.0, time_limit=math.inf)
-    for stops in (2, 14):  # the order of few stops is exact, and of more the best of a search
-        tour(space, np.resize([CORNER, OTHER_CORNER], (stops, 2)), n_jobs=1)
+    tour(space, (CORNER, OTHER_CORNER), n_jobs=1)
+    improve_ring(np.zeros((3, 3)), np.arange(3), 1, stream(0))  # for tours of more stops
     flood(make_problem(space, np.array(CORNER), np.array(OTHER_CORNER), 0.0))
     space.nearest_reachable(CORNER, OTHER_CORNER, 1.0)
     space.clearance(CORNER)
