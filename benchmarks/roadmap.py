@@ -94,7 +94,7 @@ def roadmap(bench: Bench) -> Section:
         _at_most('a request in a batch there', IN_BATCH, buildings, lambda r: r.in_batch),
         on_all(
             'its length over the lower bound',
-            f'{LENGTH:g}',
+            f'{LENGTH:.7g}',
             {row.name: f'{row.ratios.max():.7f}' for row in rows if row.ratios.max() > LENGTH},
             len(rows),
         ),
@@ -111,8 +111,8 @@ def _at_most(
 ) -> Verdict:
     """Return the verdict on the median of times [s], which has a target on all rows."""
     medians = {row.name: float(np.median(seconds(row))) for row in rows}
-    slow = {name: f'{1e6 * time:.0f} us' for name, time in medians.items() if time > target}
-    return on_all(what, f'{1e6 * target:.0f} us', slow, len(rows))
+    slow = {name: f'{milliseconds(time)} ms' for name, time in medians.items() if time > target}
+    return on_all(what, f'{milliseconds(target)} ms', slow, len(rows))
 
 
 def _random_ends(space: GridSpace) -> tuple[Floats, Floats]:
