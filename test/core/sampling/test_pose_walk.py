@@ -35,7 +35,7 @@ def room(footprint=RECTANGLE, **options):
 def uniform(space, n, rng):
     """Return n exactly uniform free poses, by rejection; ``test_contact`` checks ``contains``."""
     lower, upper = space.bounds
-    poses = rng.uniform(lower, upper, (8 * n, 3))
+    poses = rng.uniform(lower, upper, (8 * n + 200, 3))
     poses = poses[space.contains(poses)][:n]
     assert len(poses) == n
     return poses
@@ -76,14 +76,14 @@ def differential(pose, rng):
 
 def turning_more_on_the_left(pose, rng):
     """Draw a twist by a law that depends on the pose."""
-    probability = 0.7 if pose[0] < 0.0 else 0.3
+    probability = 0.95 if pose[0] < 0.0 else 0.05
     return (1.0, 0.0, 0.0) if rng.random() > probability else (0.0, 0.0, 1.0)
 
 
 WALKS = {
     'right': {'twist': differential},
     'twist depends on the pose': {'twist': turning_more_on_the_left},
-    'chord cut ahead': {'twist': differential, 'share': 0.8},
+    'chord cut ahead': {'twist': differential, 'share': 0.5},
     'yaw not wrapped': {'twist': differential, 'wrap': False},
 }
 
