@@ -73,7 +73,6 @@ setup(
         'test': [
             'arviz>=0.17',
             'colcon-common-extensions>=0.3',
-            'highspy>=1.7',
             'hypothesis>=6.98',
             'joblib>=1.3',
             'pytest>=7.4',

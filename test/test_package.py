@@ -64,9 +64,9 @@ IN_ROSDEP = {
     'shapely': 'python3-shapely',
     'yaml': 'python3-yaml',
 }
-#: rosdep has a key for numba, but Ubuntu 24.04 no package; it has neither for arviz and highspy.
-#: Tests in a browser are skipped where selenium is missing.
-NOT_IN_ROSDEP = {'arviz', 'highspy', 'numba', 'selenium'}
+#: rosdep has a key for numba, but Ubuntu 24.04 no package; it has neither for arviz. Tests in a
+#: browser are skipped where selenium is missing.
+NOT_IN_ROSDEP = {'arviz', 'numba', 'selenium'}
 #: Imported by one function only, for those who have it.
 OPTIONAL = {'arviz', 'joblib'}
 

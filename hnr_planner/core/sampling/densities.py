@@ -154,6 +154,8 @@ def draw_normal_between(lower, upper, rng):
     The proposal is normal where the interval is wide around 0, exponential in a tail, and else
     uniform (Robert, "Simulation of truncated normal variables", 1995).
     """
+    if not lower < upper:
+        return lower  # of a chord without length, or of numbers that overflow
     if lower > 0.0:
         return _draw_in_tail(lower, upper, rng)
     if upper < 0.0:

@@ -22,7 +22,7 @@ def step_of(walk: str | Walk, space: Space, n_steps: int = 1) -> Step:
     def step(points: Floats, rng: np.random.Generator) -> Floats:
         moved = space.to_kernel(points)
         chain = new_chain(space, moved[0].copy(), stream(int(rng.integers(2**63))))
-        u = np.zeros(space.dim)
+        u = np.zeros(space.kernel_dim)
         _step_from_each(space.data, compiled, moved, chain, u, n_steps)
         return space.from_kernel(moved)
 

@@ -210,10 +210,10 @@ def test_steps_are_the_same_interpreted_and_compiled(walk):
 
 def test_a_diagnosis_counts_for_densities_too():
     """Chains in two modes of one density do not converge; chains in one mode do."""
-    far_modes = HitAndRunWalk(njit(lambda x: -300.0 * (x[0] ** 2 - 1.0) ** 2 - x[1] ** 2))
+    modes = njit(lambda x: -3e4 * min((x[0] - 1.0) ** 2, (x[0] + 1.0) ** 2) - 3e4 * x[1] ** 2)
     space = BoxSpace((-2.0, -2.0), (2.0, 2.0))
-    start = [(-1.0, 0.0), (1.0, 0.0), (-1.0, 0.1), (1.0, 0.1)]
-    apart = diagnose(sample(space, start, 1500, walk=far_modes, thin=3, seed=1))
+    start = [(-1.0, 0.0), (1.0, 0.0), (-1.0, 0.01), (1.0, 0.01)]
+    apart = diagnose(sample(space, start, 1500, walk=HitAndRunWalk(modes), thin=3, seed=1))
     assert not apart.converged
     assert apart.separated.any()
     normal = HitAndRunWalk(Gaussian((0.0, 0.0), np.diag((0.3, 0.6))))
