@@ -12,18 +12,10 @@ import math
 import threading
 import time
 
-from hnr_planner.core import (
-    plan,
-    plan_trajectory,
-    PlannerStatus,
-    PlanResult,
-    RequestError,
-    TrajectoryResult,
-)
 from hnr_planner.core.kernels.kernel import interpreted_calls
 from hnr_planner.core.planning.escape import escape_point
-from hnr_planner.core.planning.planner import Planner
 from hnr_planner.core.planning.tiers import remark_since, tier_since
+from hnr_planner.server.legs import LastPath, LegPlanner, PlannerFor
 from hnr_planner.server.limits import RequestLimits
 from hnr_planner.server.map_store import MapSnapshot
 from hnr_planner.server.outcomes import Outcome, Refusal
@@ -31,20 +23,14 @@ from hnr_planner.server.path_validity import first_blocked_pose
 from hnr_planner.server.poses import MOST_POSES, pose_rows
 from hnr_planner.server.requests import check_request, PlanRequest, Pose
 from hnr_planner.server.responses import PlanResponse
-from hnr_planner.server.route_keeping import keep_route
 from hnr_planner.server.settings import Settings
-from hnr_planner.server.stop_order import in_short_order
 from hnr_planner.server.times import Times
-from hnr_planner.server.trajectories import trajectory_path
 from hnr_planner.server.waiting import NewestMap, wait_for_map
-from hnr_planner.server.waypoints import joined
-from hnr_planner.server.zone_exits import led_out, zone_exit
+from hnr_planner.server.zone_exits import zone_exit
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 ToFrame = Callable[[Pose, str], Pose]
-PlannerFor = Callable[[str, MapSnapshot], str | Planner]
-LastPath = Callable[[PlanRequest], NDArray[np.float64] | None]
 
 #: Time [s] that measuring the clearance of a path gets even when the time limit has passed.
 MEASURING_TIME = 0.02
@@ -114,7 +100,8 @@ def respond(
         check_request(request)
         with times.phase('map'):
             snapshot = wait_for_map(newest_map, settings.patience, cancel)
-        job = _Job(settings, newest_map, to_frame, limits, times, planner_for, last_path)
+        legs = LegPlanner(settings, limits, times, planner_for, last_path)
+        job = _Job(settings, newest_map, to_frame, limits, times, legs)
         response = job.plan_for_newest_map(request, snapshot)
     except Refusal as refusal:
         why = refusal.why + (remark_since(before) if limits.hold() else '')
@@ -128,7 +115,8 @@ class _Job:
     """
     The work for one request.
 
-    ``limits`` hold for all its searches and checks together, which add to ``times``.
+    ``limits`` hold for all its searches and checks together, which add to ``times``; ``legs``
+    plans on one map.
     """
 
     settings: Settings
@@ -136,8 +124,7 @@ class _Job:
     to_frame: ToFrame
     limits: RequestLimits
     times: Times
-    planner_for: PlannerFor
-    last_path: LastPath
+    legs: LegPlanner
 
     def plan_for_newest_map(self, request: PlanRequest, snapshot: MapSnapshot) -> PlanResponse:
         """
@@ -148,7 +135,7 @@ class _Job:
         """
         first = snapshot
         while True:
-            response = self._plan_legs(self._in_frame(request, snapshot.frame), snapshot)
+            response = self.legs.plan(self._in_frame(request, snapshot.frame), snapshot)
             if response.outcome is Outcome.TIMEOUT and snapshot is not first:
                 raise self._map_changed()
             if not response.solved:
@@ -232,184 +219,6 @@ class _Job:
         with self.times.phase('map'):
             start, *via, goal = (transform(name, pose) for name, pose in request.named_poses)
         return replace(request, start=start, via=tuple(via), goal=goal)
-
-    def _plan_legs(self, request: PlanRequest, snapshot: MapSnapshot) -> PlanResponse:
-        """
-        Plan one leg from each pose to the next, on one map, and return them joined.
-
-        Each leg starts where the leg before it ended. The first leg that fails ends the work, and
-        ``why`` names it: its response is returned, or with ``allow_partial_planning`` and after a
-        leg that did not fail, those of the legs before it, with the last pose reached as the goal.
-        """
-        if not request.via:
-            return self._plan(request, snapshot)
-        request, order = self._ordered(request, snapshot)
-        in_order = f'poses in the order {", ".join(map(str, order))}; ' if order else ''
-        legs: list[PlanResponse] = []
-        start, ends = request.start, (*request.via, request.goal)
-        for number, end in enumerate(ends, 1):
-            leg = self._plan(replace(request, start=start, via=(), goal=end), snapshot, n_paths=1)
-            if not leg.solved:
-                failed = f'{in_order}leg {number} of {len(ends)}: {leg.why}'
-                partial = self.settings.allow_partial_planning and not self.limits.cancel.is_set()
-                if not (partial and legs):
-                    return replace(leg, why=failed)
-                why = f'the path ends at pose {number - 1} on the way, as allowed, since {failed}'
-                request = replace(request, via=ends[: number - 2], goal=ends[number - 2])
-                return replace(self._joined(request, legs), why=why, n_reached=len(legs))
-            legs.append(leg)
-            x, y = leg.path[-1].tolist()
-            start = replace(end, position=(x, y, 0.0))
-        response = self._joined(request, legs)
-        return replace(response, why=in_order + response.why)
-
-    @staticmethod
-    def _joined(request: PlanRequest, legs: list[PlanResponse]) -> PlanResponse:
-        """Return the responses to solved legs as the response to ``request``."""
-        result = joined([leg.result for leg in legs if isinstance(leg.result, PlanResult)])
-        why = '; '.join(f'leg {number}: {leg.why}' for number, leg in enumerate(legs, 1))
-        return replace(legs[0], why=why, request=request, result=result)
-
-    def _ordered(
-        self, request: PlanRequest, snapshot: MapSnapshot
-    ) -> tuple[PlanRequest, list[int]]:
-        """
-        Return the request with its poses in a short order, and that order, where it may be any.
-
-        Without the parameter ``any_order`` it is the request as it came, and an empty list.
-        """
-        as_it_came: tuple[PlanRequest, list[int]] = request, []
-        if not self.settings.any_order:
-            return as_it_came
-        return self.limits.within(
-            lambda: in_short_order(
-                request,
-                snapshot.space,
-                self.settings.escape_radius,
-                self.limits.time_left,
-                self.limits.cancel,
-            ),
-            as_it_came,
-        )
-
-    def _plan(
-        self, request: PlanRequest, snapshot: MapSnapshot, n_paths: int | None = None
-    ) -> PlanResponse:
-        """
-        Plan from the start to the goal on one map; the poses of ``via`` are not looked at.
-
-        ``n_paths`` is the number of alternatives, by default that of the parameters.
-        """
-        arguments = self.settings.plan_arguments
-        if n_paths is not None:
-            arguments['alternatives'] = n_paths
-        start, exit_point = request.start.point, zone_exit(request, snapshot)
-        try:
-            if request.has_inertia:
-                return self._plan_trajectory(request, snapshot)
-            result = plan(
-                snapshot.space,
-                start if exit_point is None else exit_point,
-                request.goal.point,
-                algorithm=self.planner_for(request.algorithm, snapshot),
-                goal_tolerance=request.tolerance,
-                time_limit=self.limits.time_left,
-                cancel=self.limits.cancel,
-                **arguments,
-            )
-        except RequestError as error:
-            raise Refusal(Outcome.BAD_REQUEST, str(error)) from error
-        self.times.add_planning(result)
-        if exit_point is not None:
-            result = led_out(result, start, exit_point)
-        with self.times.phase('shortening'):
-            result, route = keep_route(
-                result, self.last_path(request), snapshot.space, self.settings, self.limits
-            )
-        return PlanResponse(
-            Outcome[result.status.name],
-            result.message + _about_zones(request, snapshot, result),
-            request,
-            result,
-            escape=result.escape,
-            route=route,
-            snapshot=snapshot,
-        )
-
-    def _plan_trajectory(self, request: PlanRequest, snapshot: MapSnapshot) -> PlanResponse:
-        """
-        Plan for a robot with inertia that is at rest at the start.
-
-        Where the goal is blocked or unreachable and the tolerance is above 0, the search is
-        repeated for the reachable point nearest the goal within the tolerance, if there is one;
-        ``why`` states this. A trajectory that is found is turned into a path as well.
-        """
-        goal = request.goal.point
-        result = self._search_trajectory(request, snapshot, goal, moved=False)
-        why = result.message
-        missed = result.status in (PlannerStatus.INVALID_GOAL, PlannerStatus.UNREACHABLE)
-        if missed and request.tolerance > 0.0:
-            with self.limits.enforced():
-                nearest = snapshot.space.nearest_reachable(
-                    request.start.point, goal, request.tolerance
-                )
-            if nearest is None:
-                why += f'; nothing within {request.tolerance:g} m of it can be reached'
-            else:
-                result = self._search_trajectory(request, snapshot, nearest, moved=True)
-                offset = math.dist(nearest, goal)
-                why = f'{result.message}; the goal was moved by {offset:.4g} m because {why}'
-        outcome, trajectory = Outcome[result.status.name], result.trajectory
-        if trajectory is not None:
-            with self.limits.enforced():
-                path = trajectory_path(trajectory, snapshot.space, self.limits.check)
-            result = replace(result, path=path)
-        return PlanResponse(
-            outcome, why, request, result, trajectory=trajectory, snapshot=snapshot
-        )
-
-    def _search_trajectory(
-        self, request: PlanRequest, snapshot: MapSnapshot, goal: ArrayLike, *, moved: bool
-    ) -> TrajectoryResult:
-        """
-        Search a trajectory from rest at the start of ``request`` to a point.
-
-        Parameters
-        ----------
-        request : PlanRequest
-            The request, in the map's frame; its goal is not looked at.
-        snapshot : MapSnapshot
-            The map to search on.
-        goal : (2,)
-            Where the trajectory has to end, in the map's frame [m].
-        moved : bool
-            Whether ``goal`` stands in for a goal that could not be reached.
-
-        """
-        result = plan_trajectory(
-            snapshot.space,
-            self.settings.system,
-            (*request.start.point, 0.0, 0.0),
-            goal,
-            algorithm=request.algorithm,
-            time_limit=self.limits.time_left,
-            cancel=self.limits.cancel,
-            **self.settings.trajectory_arguments(request.algorithm, goal_is_moved=moved),
-        )
-        self.times.add_planning(result)
-        return result
-
-
-def _about_zones(request: PlanRequest, snapshot: MapSnapshot, result: PlanResult) -> str:
-    """Return what keepout zones have to do with a result, as the end of its message."""
-    ends = {
-        PlannerStatus.INVALID_START: ('start', request.start),
-        PlannerStatus.INVALID_GOAL: ('goal', request.goal),
-    }
-    if result.status in ends:
-        name, pose = ends[result.status]
-        return f'; the {name} is in a keepout zone' if snapshot.is_in_zone(pose.point) else ''
-    return ''
 
 
 def _is_still_free(response: PlanResponse, newer: MapSnapshot) -> bool:
