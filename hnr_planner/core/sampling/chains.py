@@ -163,7 +163,8 @@ class Chains:
 
     def one(self, k: int) -> 'Chains':
         """Return chain ``k`` alone, as views of these arrays, not copies."""
-        return Chains(*(array[k : k + 1] for array in vars(self).values()))
+        rows = slice(k, k + 1)
+        return Chains(*(array[rows] for array in vars(self).values()))
 
     @property
     def steps(self) -> NDArray[np.int64]:
