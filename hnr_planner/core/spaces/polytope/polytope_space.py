@@ -5,20 +5,18 @@ from typing import Any
 
 from hnr_planner.core.checks import check_point, check_points, Floats
 from hnr_planner.core.errors import RequestError, SpaceError
-from hnr_planner.core.spaces.bounds import COARSEST, FINEST
 from hnr_planner.core.spaces.polytope.chain_cache import largest_error
-from hnr_planner.core.spaces.polytope.extent import Reach, reach
+from hnr_planner.core.spaces.polytope.extent import reach
 from hnr_planner.core.spaces.polytope.facets import facet_axes
 from hnr_planner.core.spaces.polytope.inequalities import check_constraints, from_scipy
 from hnr_planner.core.spaces.polytope.measures import Ball, extremes, largest_ball
 from hnr_planner.core.spaces.polytope.planes import compiled_polytope, PolytopeData, SPURIOUS
 from hnr_planner.core.spaces.polytope.presolve import presolved
+from hnr_planner.core.spaces.polytope.resolution import check_resolved, moved_to, origin_of
 from hnr_planner.core.spaces.space import Chord, MARGIN, Space
 import numpy as np
 from numpy.typing import ArrayLike
 
-#: Least distance from the analytic centre to a plane, as a fraction of the terms that it rounds.
-THINNEST = 1e-10
 #: Bound on the rounding of a row's value at a mapped point, as a fraction of the row's terms.
 MAP_ROUNDING = 64 * 2.0**-53
 
@@ -86,12 +84,12 @@ class PolytopeSpace(Space):
         self._plane = inside.plane
         self._names = [constraints.name(int(source)) for source in inside.sources]
         extent = reach(normals, offsets, ball.centre)
-        self._kernel_origin = _origin(extent)
+        self._kernel_origin = origin_of(extent)
         if self._kernel_origin is not None:
-            offsets = _moved(normals, offsets, self._kernel_origin)
+            offsets = moved_to(normals, offsets, self._kernel_origin)
             ball = _ball_again(normals, offsets)
             extent = reach(normals, offsets, ball.centre)
-        _check_resolved(normals, offsets, extent)
+        check_resolved(normals, offsets, extent)
         begin, end = extent.centre - extent.outer, extent.centre + extent.outer
         if inside.plane is not None:
             offsets = offsets - inside.rounding(np.maximum(*np.abs(self._from_origin(begin, end))))
@@ -223,7 +221,7 @@ class PolytopeSpace(Space):
         from scipy import sparse
 
         normals, offsets = self.data.normals, self.data.offsets
-        rows, limits = normals @ matrix, _moved(self.normals, offsets, origin)
+        rows, limits = normals @ matrix, moved_to(self.normals, offsets, origin)
         lengths = np.linalg.norm(rows, axis=1)
         rows, limits = rows / lengths[:, np.newaxis], limits / lengths
         rows[np.abs(rows) < SPURIOUS] = 0.0
@@ -356,52 +354,3 @@ def _ball_again(normals: Any, offsets: Floats) -> Ball:
     if not isinstance(ball, Ball):
         raise SpaceError('the polytope is too thin to be measured where it lies')
     return ball
-
-
-def _origin(extent: Reach) -> Floats | None:
-    """
-    Return the origin (dim,) of the kernel frame, in the caller's frame; None for 0.
-
-    A coordinate is counted from the analytic centre if rounding there is more than ``FINEST`` of
-    the width of the inner box, and else from 0. Raise SpaceError if it is more than ``COARSEST``.
-    """
-    rounding = np.spacing(np.abs(extent.centre) + extent.outer)
-    if not (rounding <= 2.0 * COARSEST * extent.inner).all():
-        raise SpaceError(
-            f'the polytope is too thin for where it lies: coordinates must resolve {COARSEST:g} '
-            f'of its width, but around {extent.centre.tolist()} they are rounded to '
-            f'{rounding.max():g}; move it nearer to the origin'
-        )
-    is_far = rounding > 2.0 * FINEST * extent.inner
-    return np.where(is_far, extent.centre, 0.0) if is_far.any() else None
-
-
-def _moved(normals: Any, offsets: Floats, origin: Floats) -> Floats:
-    """
-    Return the right-hand sides (m,) for points counted from ``origin`` (dim,).
-
-    They are computed in extended precision and rounded once.
-    """
-    exact = np.longdouble
-    products = normals.data.astype(exact) * origin.astype(exact)[normals.indices]
-    row = np.repeat(np.arange(len(offsets)), np.diff(normals.indptr))
-    moved = offsets.astype(exact)
-    np.subtract.at(moved, row, products)
-    return np.asarray(moved, dtype=np.float64)
-
-
-def _check_resolved(normals: Any, offsets: Floats, extent: Reach) -> None:
-    """
-    Raise SpaceError if a distance from the centre to a plane is too small to be resolved.
-
-    Each has to be above ``THINNEST`` times the sum of the sizes of its terms.
-    """
-    distances = offsets - normals @ extent.centre
-    terms = abs(normals) @ (np.abs(extent.centre) + extent.inner) + np.abs(offsets)
-    if not (distances > THINNEST * terms).all():
-        k = int(np.argmin(distances / terms))
-        raise SpaceError(
-            f'the polytope is too thin: {distances[k]:g} from its middle to a plane, which is '
-            f'less than {THINNEST:g} of coordinates of {terms[k]:g}; turn and scale the '
-            f'coordinates so that its sides are of about the same length'
-        )
