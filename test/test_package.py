@@ -201,7 +201,7 @@ def test_requirements_of_the_tests_are_what_they_import_besides(
 ) -> None:
     imported = {name for name in libraries(*ROOT.glob('test/**/*.py')) if not is_ros(name)}
     imported -= libraries(*map(source, MODULES)) - OPTIONAL
-    imported -= {'benchmarks', 'distutils', 'test'}
+    imported -= {'benchmarks', 'distutils', 'test', 'xdist'}  # xdist is among the tools
     tools = {'colcon-common-extensions', 'pytest-xdist', 'setuptools'}
     declared = names(distribution.extras_require['test'])
     assert declared == imported | tools
