@@ -22,6 +22,7 @@ PRINTS = {
     'arm_by_an_oracle': r'SOLVED',
     'clearance': r'clearance=0.0: 10\.\d+ m.*\nclearance=0.8: 1[23]\.\d+ m',
     'exact_and_certified': r'found 4\d\.\d+ m, no path is shorter than 42\.\d+ m',
+    'parking': r'SOLVED',
     'plan_on_a_map': r'SOLVED',
     'points_of_a_polytope': r'converged',
     'roadmap': r'Roadmap\(',
