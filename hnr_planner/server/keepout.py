@@ -11,12 +11,10 @@ from hnr_planner.core import GridSpace
 from hnr_planner.core.checks import Floats
 from hnr_planner.core.spaces.grid.frame import GridFrame
 from hnr_planner.maps import OccupancyMap
+from hnr_planner.maps.occupancy import UNKNOWN
 from hnr_planner.server.received_maps import MapError
 import numpy as np
 from numpy.typing import NDArray
-
-#: The value of an unknown cell.
-UNKNOWN = -1
 
 
 def zones_on(
@@ -102,11 +100,11 @@ def _zone_of(mask: OccupancyMap, threshold: int, occupancy: OccupancyMap) -> NDA
     here, there = _frame(occupancy), _frame(mask)
     # The cells of the map that hold a centre of the zone.
     centres = np.argwhere(inside)[:, ::-1].astype(np.float64) + 0.5
-    x, y = _cells_in(zone.shape, _converted(centres, there, here)).T
+    found = _converted(centres, there, here)
+    x, y = _cells_in(zone.shape, found).T
     zone[y, x] = True
     # The cells of the map whose centres are in the zone, looked for around these.
     around = 1.0 + 1.5 * mask.resolution / occupancy.resolution
-    found = _converted(centres, there, here)
     low = np.maximum(np.floor(found.min(axis=0) - around), 0).astype(int)
     high = np.minimum(np.ceil(found.max(axis=0) + around), zone.shape[::-1]).astype(int)
     columns, rows = np.meshgrid(np.arange(low[0], high[0]), np.arange(low[1], high[1]))

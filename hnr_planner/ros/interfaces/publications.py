@@ -89,10 +89,9 @@ class PlanPublication(Publication):
     def messages(self) -> Messages:
         """Yield path, alternatives and trajectory; each is empty where there is none."""
         yield 'path', self.path
-        for poses in self.response.poses_of_all:
+        yield 'paths', self.path
+        for poses in self.response.other_poses:
             yield 'paths', serialised_path(poses, self.header)
-        if not self.response.solved:
-            yield 'paths', self.path
         yield 'trajectory', serialised_trajectory(self.response.trajectory, self.header)
 
     def pictures(self) -> Pictures:
