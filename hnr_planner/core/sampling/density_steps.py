@@ -168,13 +168,20 @@ def _check_dim(space: Space, dim: int) -> None:
         raise RequestError(f'the density has {dim} dimensions, the space has {space.dim}')
 
 
+@inlined
+def _draw_chord(walk, space, cache, u, rng, counts):
+    """Write a uniform direction into ``u``; return the ends of the chord along it."""
+    uniform_direction(rng, u)
+    lower, upper = chord_cached(space, cache, u, NO_AXIS)
+    counts[ZERO_CHORDS] += upper - lower < walk.zero_length
+    return lower, upper
+
+
 @take_step.register(GaussianStep)
 @inlined
 def _gaussian(walk, space, cache, u, rng, counts):
     """Move by a draw from the normal density on the chord; return whether the chain moved."""
-    uniform_direction(rng, u)
-    lower, upper = chord_cached(space, cache, u, NO_AXIS)
-    counts[ZERO_CHORDS] += upper - lower < walk.zero_length
+    lower, upper = _draw_chord(walk, space, cache, u, rng, counts)
     curvature, slope = 0.0, 0.0
     for i in range(len(u)):
         along = 0.0
@@ -196,9 +203,7 @@ def _gaussian(walk, space, cache, u, rng, counts):
 @inlined
 def _exponential(walk, space, cache, u, rng, counts):
     """Move by a draw from the exponential density on the chord; return whether it moved."""
-    uniform_direction(rng, u)
-    lower, upper = chord_cached(space, cache, u, NO_AXIS)
-    counts[ZERO_CHORDS] += upper - lower < walk.zero_length
+    lower, upper = _draw_chord(walk, space, cache, u, rng, counts)
     rate = 0.0
     for i in range(len(u)):
         rate += walk.rates[i] * u[i]
@@ -214,9 +219,7 @@ def _exponential(walk, space, cache, u, rng, counts):
 @inlined
 def _slice(walk, space, cache, u, rng, counts):
     """Move by a draw from a slice of the density on the chord; return whether it moved."""
-    uniform_direction(rng, u)
-    lower, upper = chord_cached(space, cache, u, NO_AXIS)
-    counts[ZERO_CHORDS] += upper - lower < walk.zero_length
+    lower, upper = _draw_chord(walk, space, cache, u, rng, counts)
     n = len(walk.offset)
     line, work = np.empty((2, n)), np.empty(n + 1)
     for i in range(n):
