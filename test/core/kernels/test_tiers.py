@@ -107,15 +107,17 @@ say(interpreted_calls(), compilation.status().running)
 
 def test_what_a_call_waits_for_comes_before_what_uses_need(start: Start, tmp_path: Path):
     process = start(
-        'samples.gated(1.0)'
-        + PREPARE
-        + """
+        """
 names = []
 take = compilation._background.take
 def note(notice):
     take(notice)
     names.append('workload' if isinstance(notice.about, list) else notice.about.name)
-compilation._background.take = note
+compilation._background.take = note  # before there is a thread that may hold the old one
+samples.gated(1.0)
+"""
+        + PREPARE
+        + """
 wait(samples.someone_compiles_gated)
 samples.total(samples.Pair(1.0, 2.0), 1.0)
 wait(lambda: compilation._background.workloads and compilation._background.messages.empty())
