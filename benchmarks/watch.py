@@ -1,0 +1,171 @@
+"""
+Measure the page that shows a running node: ``python -m benchmarks.watch [--quick]``.
+
+A real node plans on the office map, and a real browser without a screen shows it. Measured are the
+time from a response until the page has drawn its path, and what the node pays for a page that
+looks: the CPU time of its process for a request, without and with a page in turns. It needs
+chromium and its driver. ``--picture FILE`` keeps a picture of the page.
+"""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Iterator
+from contextlib import contextmanager
+import os
+from pathlib import Path
+from statistics import median
+import subprocess
+import sys
+from tempfile import TemporaryDirectory
+from test.browser import BrowserPage, open_browser
+from test.ros.domain import own_domain
+from test.ros.harness import Client, node_process, pose
+import time
+from typing import Any
+
+from benchmarks.answer_cost import cost_of
+from benchmarks.sections import Verdict, verdict_table
+from hnr_planner.core.kernels import modes
+import numpy as np
+
+OFFICE = Path(__file__).parents[1] / 'config' / 'maps' / 'office.yaml'
+#: Ends of the requests [m]: through the whole floor, some of them by another way.
+ENDS = (((3.0, 22.0), (34.0, 5.0)), ((34.0, 22.0), (3.0, 5.0)), ((20.0, 6.5), (3.0, 22.0)))
+#: Requests with the page open, and turns without and with it; requests in each turn.
+N_SHOWN, N_TURNS, N_EACH = 200, 20, 10
+N_SHOWN_QUICK, N_TURNS_QUICK = 40, 6
+#: Time [s] between requests.
+PAUSE = 0.25
+#: Targets: time [s] from a response to its path on the screen, 95 of 100 times; CPU time of the
+#: node with a page as a multiple of that without.
+MOST_TIME, MOST_COST = 0.15, 1.05
+
+#: Notes, for each request, when its path was drawn [ms since 1970]: the frame after the drawing.
+NOTE = """
+window.drawn = {};
+const drawAll = draw;
+draw = () => {
+  drawAll();
+  const stamp = searches[0]?.stamp;
+  if (stamp === undefined || window.drawn[stamp]) return;
+  window.drawn[stamp] = Infinity;
+  requestAnimationFrame(() => {
+    window.drawn[stamp] = performance.timeOrigin + performance.now();
+  });
+};
+"""
+
+
+def main() -> None:
+    """Measure, and print the verdicts."""
+    parser = argparse.ArgumentParser(prog='python -m benchmarks.watch', description=__doc__)
+    parser.add_argument('--quick', action='store_true', help='less, for a look')
+    parser.add_argument('--picture', type=Path, help='a picture of the page to write (.png)')
+    arguments = parser.parse_args()
+    os.environ.setdefault(modes.VARIABLE, modes.Mode.COMPILED.value)
+    with TemporaryDirectory() as folder, own_domain() as domain:
+        os.environ |= {
+            'ROS_DOMAIN_ID': str(domain),
+            'ROS_AUTOMATIC_DISCOVERY_RANGE': 'LOCALHOST',
+            'ROS_LOG_DIR': folder,
+        }
+        with _nodes(Path(folder)) as (pid, client, address), open_browser() as browser:
+            page = BrowserPage(browser, address)
+            page.wait(lambda: browser.execute_script('return data.map !== null'))
+            if arguments.picture is not None:
+                _picture(browser, client, arguments.picture)
+            n_shown = N_SHOWN_QUICK if arguments.quick else N_SHOWN
+            n_turns = N_TURNS_QUICK if arguments.quick else N_TURNS
+            verdicts = [_on_screen(page, client, n_shown)]
+            verdicts.append(_cost(page, client, address, pid, n_turns))
+            client.close()
+    print(verdict_table(verdicts))
+
+
+@contextmanager
+def _nodes(folder: Path) -> Iterator[tuple[int, Client, str]]:
+    """Run a planning node with a map and its page; yield its process, a client, the address."""
+    settings = {'robot_radius': 0.22, 'watch_port': 0}
+    with (
+        node_process('planner_node', folder / 'planner', **settings) as planner,
+        node_process('map_node', folder / 'map', yaml_filename=OFFICE),
+        subprocess.Popen(
+            [sys.executable, '-m', 'hnr_planner', 'watch', '--port', '0'],
+            stdout=subprocess.PIPE,
+            text=True,
+        ) as watch,
+    ):
+        try:
+            planner.wait_for('map received')
+            assert watch.stdout is not None
+            yield planner.popen.pid, Client(), watch.stdout.readline().split()[0]
+        finally:
+            watch.terminate()
+
+
+def _ask(client: Client, number: int) -> Any:
+    start, goal = ENDS[number % len(ENDS)]
+    return client.plan(pose(*start), pose(*goal))
+
+
+def _on_screen(page: BrowserPage, client: Client, n_requests: int) -> Verdict:
+    """Measure the time from a response at the client until the page has drawn its path."""
+    page.browser.execute_script(NOTE)
+    answered = {}
+    for number in range(n_requests):
+        path = _ask(client, number)
+        answered[f'{path.header.stamp.sec}.{path.header.stamp.nanosec:09d}'] = time.time()
+        time.sleep(PAUSE)
+    time.sleep(1.0)
+    drawn = page.browser.execute_script('return window.drawn')
+    delays = [drawn[stamp] / 1e3 - at for stamp, at in answered.items() if stamp in drawn]
+    missed = len(answered) - len(delays)
+    middle, most = np.percentile(delays, [50, 95])
+    return Verdict(
+        f'time from a response until its path is on the screen, {n_requests} requests',
+        f'95 % within {1e3 * MOST_TIME:.0f} ms',
+        f'median {1e3 * middle:.0f} ms, 95 % within {1e3 * most:.0f} ms, {missed} not shown',
+        most <= MOST_TIME and missed == 0,
+    )
+
+
+def _cost(page: BrowserPage, client: Client, address: str, pid: int, n_turns: int) -> Verdict:
+    """Measure the CPU time of the node for a request, without and with the page, in turns."""
+    costs: dict[bool, list[float]] = {False: [], True: []}
+    for _ in range(n_turns):
+        for looks in (False, True):
+            page.browser.get(address if looks else 'about:blank')
+            time.sleep(1.5)  # for subscriptions to come or go
+            for number in range(-1, N_EACH):
+                cost = cost_of(lambda number=number: _ask(client, number), pid)
+                if number >= 0:
+                    costs[looks].append(cost)
+    without, with_page = (float(np.mean(costs[looks])) for looks in (False, True))
+    ratios = [
+        float(np.mean(costs[True][first : first + N_EACH]))
+        / float(np.mean(costs[False][first : first + N_EACH]))
+        for first in range(0, n_turns * N_EACH, N_EACH)
+    ]
+    return Verdict(
+        f'CPU time of the node for a request while a page looks, {n_turns * N_EACH} requests each',
+        f'{MOST_COST} x',
+        f'{1e3 * without:.2f} ms without, {1e3 * with_page:.2f} ms with: '
+        f'{with_page / without:.3f} x (median of turns {median(ratios):.3f})',
+        with_page <= MOST_COST * without,
+    )
+
+
+def _picture(browser: Any, client: Client, file: Path) -> None:
+    """Write a picture of the page with a search that has unfolded."""
+    browser.execute_script("document.getElementById('unfold').checked = false")
+    start, goal = ENDS[0]
+    client.set_parameters(alternatives=2, seed=3)
+    client.plan(pose(*start), pose(*goal), 'plan_hit_and_run')
+    client.set_parameters(alternatives=1, seed=-1)
+    time.sleep(2.0)
+    browser.save_screenshot(str(file))
+
+
+if __name__ == '__main__':
+    main()
