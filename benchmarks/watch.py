@@ -12,6 +12,7 @@ from __future__ import annotations
 import argparse
 from collections.abc import Iterator
 from contextlib import contextmanager
+from functools import partial
 import os
 from pathlib import Path
 from statistics import median
@@ -20,14 +21,19 @@ import sys
 from tempfile import TemporaryDirectory
 from test.browser import BrowserPage, open_browser
 from test.ros.domain import own_domain
-from test.ros.harness import Client, node_process, pose
+from test.ros.harness import node_process, pose, SOON
 import time
 from typing import Any
 
 from benchmarks.answer_cost import cost_of
 from benchmarks.sections import Verdict, verdict_table
 from hnr_planner.core.kernels import modes
+from nav_msgs.srv import GetPlan
 import numpy as np
+import rclpy
+from rclpy.context import Context
+from rclpy.executors import SingleThreadedExecutor
+from rclpy.node import Node
 
 OFFICE = Path(__file__).parents[1] / 'config' / 'maps' / 'office.yaml'
 #: Ends of the requests [m]: through the whole floor, some of them by another way.
@@ -84,7 +90,7 @@ def main() -> None:
 
 
 @contextmanager
-def _nodes(folder: Path) -> Iterator[tuple[int, Client, str]]:
+def _nodes(folder: Path) -> Iterator[tuple[int, Caller, str]]:
     """Run a planning node with a map and its page; yield its process, a client, the address."""
     settings = {'robot_radius': 0.22, 'watch_port': 0}
     with (
@@ -99,22 +105,53 @@ def _nodes(folder: Path) -> Iterator[tuple[int, Client, str]]:
         try:
             planner.wait_for('map received')
             assert watch.stdout is not None
-            yield planner.popen.pid, Client(), watch.stdout.readline().split()[0]
+            yield planner.popen.pid, Caller(), watch.stdout.readline().split()[0]
         finally:
             watch.terminate()
 
 
-def _ask(client: Client, number: int) -> Any:
-    start, goal = ENDS[number % len(ENDS)]
-    return client.plan(pose(*start), pose(*goal))
+class Caller:
+    """A client that subscribes to nothing: the node makes no pictures for it."""
+
+    def __init__(self) -> None:
+        """Take part in ROS, in a context of its own."""
+        self._context = Context()
+        rclpy.init(context=self._context)
+        self._node = Node('caller', context=self._context)
+        self._executor = SingleThreadedExecutor(context=self._context)
+        self._executor.add_node(self._node)
+        self._clients: dict[str, Any] = {}
+
+    def close(self) -> None:
+        """End the client."""
+        self._node.destroy_node()
+        rclpy.try_shutdown(context=self._context)
+
+    def call(self, kind: Any, name: str, request: Any) -> Any:
+        """Call a service of the planning node and return its response."""
+        if name not in self._clients:
+            self._clients[name] = self._node.create_client(kind, f'/hnr_planner/{name}')
+            assert self._clients[name].wait_for_service(SOON)
+        future = self._clients[name].call_async(request)
+        deadline = time.monotonic() + SOON
+        while not future.done() and time.monotonic() < deadline:
+            self._executor.spin_once(SOON)
+        return future.result()
+
+    def plan(self, number: int, service: str = 'plan') -> Any:
+        """Request a path between a pair of ``ENDS`` and return it."""
+        start, goal = ENDS[number % len(ENDS)]
+        return self.call(
+            GetPlan, service, GetPlan.Request(start=pose(*start), goal=pose(*goal))
+        ).plan
 
 
-def _on_screen(page: BrowserPage, client: Client, n_requests: int) -> Verdict:
+def _on_screen(page: BrowserPage, client: Caller, n_requests: int) -> Verdict:
     """Measure the time from a response at the client until the page has drawn its path."""
     page.browser.execute_script(NOTE)
     answered = {}
     for number in range(n_requests):
-        path = _ask(client, number)
+        path = client.plan(number)
         answered[f'{path.header.stamp.sec}.{path.header.stamp.nanosec:09d}'] = time.time()
         time.sleep(PAUSE)
     time.sleep(1.0)
@@ -130,39 +167,32 @@ def _on_screen(page: BrowserPage, client: Client, n_requests: int) -> Verdict:
     )
 
 
-def _cost(page: BrowserPage, client: Client, address: str, pid: int, n_turns: int) -> Verdict:
+def _cost(page: BrowserPage, client: Caller, address: str, pid: int, n_turns: int) -> Verdict:
     """Measure the CPU time of the node for a request, without and with the page, in turns."""
+    # For each turn, the mean cost of a request, without and with the page.
     costs: dict[bool, list[float]] = {False: [], True: []}
     for _ in range(n_turns):
         for looks in (False, True):
             page.browser.get(address if looks else 'about:blank')
             time.sleep(1.5)  # for subscriptions to come or go
-            for number in range(-1, N_EACH):
-                cost = cost_of(lambda number=number: _ask(client, number), pid)
-                if number >= 0:
-                    costs[looks].append(cost)
+            client.plan(0)
+            requests = (partial(client.plan, number) for number in range(N_EACH))
+            costs[looks].append(float(np.mean([cost_of(ask, pid) for ask in requests])))
     without, with_page = (float(np.mean(costs[looks])) for looks in (False, True))
-    ratios = [
-        float(np.mean(costs[True][first : first + N_EACH]))
-        / float(np.mean(costs[False][first : first + N_EACH]))
-        for first in range(0, n_turns * N_EACH, N_EACH)
-    ]
+    middle = median(more / less for less, more in zip(costs[False], costs[True], strict=True))
     return Verdict(
         f'CPU time of the node for a request while a page looks, {n_turns * N_EACH} requests each',
         f'{MOST_COST} x',
         f'{1e3 * without:.2f} ms without, {1e3 * with_page:.2f} ms with: '
-        f'{with_page / without:.3f} x (median of turns {median(ratios):.3f})',
+        f'{with_page / without:.3f} x (median of turns {middle:.3f})',
         with_page <= MOST_COST * without,
     )
 
 
-def _picture(browser: Any, client: Client, file: Path) -> None:
+def _picture(browser: Any, client: Caller, file: Path) -> None:
     """Write a picture of the page with a search that has unfolded."""
     browser.execute_script("document.getElementById('unfold').checked = false")
-    start, goal = ENDS[0]
-    client.set_parameters(alternatives=2, seed=3)
-    client.plan(pose(*start), pose(*goal), 'plan_hit_and_run')
-    client.set_parameters(alternatives=1, seed=-1)
+    client.plan(0, 'plan_hit_and_run')
     time.sleep(2.0)
     browser.save_screenshot(str(file))
 
