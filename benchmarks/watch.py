@@ -92,12 +92,12 @@ def main() -> None:
 @contextmanager
 def _nodes(folder: Path) -> Iterator[tuple[int, Caller, str]]:
     """Run a planning node with a map and its page; yield its process, a client, the address."""
-    settings = {'robot_radius': 0.22, 'watch_port': 0}
+    settings = {'robot_radius': 0.22}
     with (
         node_process('planner_node', folder / 'planner', **settings) as planner,
         node_process('map_node', folder / 'map', yaml_filename=OFFICE),
         subprocess.Popen(
-            [sys.executable, '-m', 'hnr_planner', 'watch', '--port', '0'],
+            [sys.executable, '-m', 'hnr_planner', 'watch', '--port', '0', '--allow-requests'],
             stdout=subprocess.PIPE,
             text=True,
         ) as watch,

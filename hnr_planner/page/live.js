@@ -17,6 +17,7 @@ let from = null;  // the start that was clicked
 let pressedAt = null;
 let isAwaited = false;  // whether the outcome of a request from a page is still to come
 let mapTurn = 0;
+let calmAt = -Infinity;  // when the last search will have been there long enough to unfold another
 
 function connect() {
   const address = new URL('live', location.href);
@@ -71,7 +72,9 @@ const RECEIVERS = {
     if (!search || search.stamp !== stamp) return;
     Object.assign(search, {samples, parents, notes});
     listSearch();
-    const unfolds = byId('unfold').checked && parents.length > 1;
+    // Searches that follow each other quickly would all be seen at their beginning only.
+    const unfolds = byId('unfold').checked && parents.length > 1 && performance.now() > calmAt;
+    calmAt = performance.now() + 1000 * seconds;
     setTime(unfolds ? 0 : 1);
     play(unfolds);
   },

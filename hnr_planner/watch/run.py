@@ -13,11 +13,11 @@ from typing import NamedTuple
 
 from hnr_planner.watch.access import check_access, is_loopback, WatchError
 from hnr_planner.watch.hub import Hub
-from hnr_planner.watch.node import SLOTS, WatchNode
+from hnr_planner.watch.node import Put, SLOTS, WatchNode
 from hnr_planner.watch.server import application, Planning, Point
 import rclpy
 from rclpy.context import Context
-from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
+from rclpy.executors import SingleThreadedExecutor
 from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.signals import SignalHandlerOptions
 from tornado.httpserver import HTTPServer
@@ -87,7 +87,7 @@ async def _serve(served: Served) -> None:
         ros.do(lambda: _watch(ros.node, wanted, lambda: hub.forget(*SLOTS), loop))
 
     hub = Hub(watch_or_not)
-    ros = _Ros(planner, served.map_topic, put)
+    ros = _Ros(planner, served.map_topic, put, lambda: loop.call_soon_threadsafe(ended.set))
     try:
         sockets = _bind(served)
         plan = _planning(ros, loop) if served.requests else None
@@ -99,6 +99,8 @@ async def _serve(served: Served) -> None:
         await server.close_all_connections()
     finally:
         ros.close()
+    if ros.failure is not None:
+        raise ros.failure
 
 
 def _watch(
@@ -152,9 +154,15 @@ def _planning(ros: _Ros, loop: asyncio.AbstractEventLoop) -> Planning:
 
 
 class _Ros:
-    """The node and the thread that runs its callbacks, from construction to ``close``."""
+    """
+    The node and the thread that runs its callbacks, from construction to ``close``.
 
-    def __init__(self, planner: str, map_topic: str, put: Callable[[str, bytes], None]) -> None:
+    ``failed`` is called when a callback raises; ``failure`` is what it raised.
+    """
+
+    def __init__(
+        self, planner: str, map_topic: str, put: Put, failed: Callable[[], object]
+    ) -> None:
         self._context = Context()
         rclpy.init(args=[], context=self._context, signal_handler_options=SignalHandlerOptions.NO)
         try:
@@ -165,6 +173,8 @@ class _Ros:
         self._executor = SingleThreadedExecutor(context=self._context)
         self._executor.add_node(self.node)
         self._is_ending = False
+        self._failed = failed
+        self.failure: Exception | None = None
         self._thread = threading.Thread(target=self._spin, name='ros', daemon=True)
         self._thread.start()
 
@@ -183,8 +193,11 @@ class _Ros:
         rclpy.try_shutdown(context=self._context)
 
     def _spin(self) -> None:
-        with suppress(ExternalShutdownException):
+        try:
             while not self._is_ending:
                 # What a callback destroys may be gone when the executor looks at it.
                 with suppress(rclpy_implementation.InvalidHandle):
                     self._executor.spin_once(timeout_sec=1.0)
+        except Exception as error:
+            self.failure = error
+            self._failed()

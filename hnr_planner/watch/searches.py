@@ -89,4 +89,8 @@ class Searches:
         if not search.is_complete or search.number <= self._shown:
             return None
         self._shown = search.number
+        # What came before is never shown any more.
+        for stamp, other in list(self._waiting.items()):
+            if 0 <= other.number <= search.number:
+                del self._waiting[stamp]
         return search

@@ -43,12 +43,14 @@ PATH = '#D55E00'
 def watching(*arguments: str) -> Iterator[str]:
     """Run the command ``watch`` and return the address of its page."""
     command = [sys.executable, '-m', 'hnr_planner', 'watch', '--port', '0', *arguments]
-    process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
+    pipes = {'stdout': subprocess.PIPE, 'stderr': subprocess.PIPE}
+    process = subprocess.Popen(command, **pipes, text=True)
     try:
         assert process.stdout is not None
         yield process.stdout.readline().split()[0]
         process.send_signal(signal.SIGINT)
-        assert process.wait(20.0) == 0
+        _, errors = process.communicate(timeout=20.0)
+        assert (process.returncode, errors) == (0, '')
     finally:
         process.kill()
         process.wait()
@@ -125,7 +127,7 @@ def test_a_plan_is_on_screen_with_its_samples_and_its_outcome(
 
 
 def test_a_search_unfolds_under_its_path(page: LivePage, client: Client) -> None:
-    page.run("document.getElementById('unfold').checked = true")
+    page.run("document.getElementById('unfold').checked = true; calmAt = 0")
     planned = client.plan(pose(*START), pose(*GOAL), 'plan_rrt')
     stamp = f'{planned.header.stamp.sec}.{planned.header.stamp.nanosec:09d}'
     page.wait(lambda: page.run('return searches[0]?.stamp') == stamp and page.time() < 1000)

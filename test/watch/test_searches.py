@@ -53,6 +53,7 @@ def test_what_never_becomes_complete_is_given_up(monkeypatch: pytest.MonkeyPatch
     searches = Searches()
     for second in range(4):
         assert add(searches, ('outcome', (second, 0), 1)) is None
-    assert add(searches, ('path', (3, 0), 0)) is not None
     assert len(searches._waiting) == 3
     assert add(searches, ('path', (0, 0), 0)) is None
+    assert add(searches, ('path', (3, 0), 0)) is not None
+    assert len(searches._waiting) == 1  # the path without an outcome
