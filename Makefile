@@ -47,9 +47,9 @@ install: $(ALL)
 
 $(DEMO): EXTRAS := ros,plot
 $(DEMO): STAMPS := $(DEMO)
-$(TEST): EXTRAS := ros,plot,experiments,test
+$(TEST): EXTRAS := ros,plot,experiments,watch,test
 $(TEST): STAMPS := $(DEMO) $(TEST)
-$(ALL): EXTRAS := ros,plot,experiments,test,check,docs
+$(ALL): EXTRAS := ros,plot,experiments,watch,test,check,docs
 $(ALL): STAMPS := $(DEMO) $(TEST) $(ALL)
 
 SUITABLE := import ensurepip, sys, venv; sys.exit(not (3, 11) <= sys.version_info[:2] <= (3, 13))

@@ -6,7 +6,7 @@ const NICE_LENGTHS = [0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2
 
 const canvas = byId('view');
 const context = canvas.getContext('2d');
-const image = new Image();
+let image = new Image();
 let drawing = false;
 
 function redraw() {
@@ -47,6 +47,7 @@ function draw() {
 }
 
 function drawMap() {
+  if (!data.map) return;
   const {origin: [x, y, yaw], resolution} = data.map;
   context.save();
   context.translate(x, y);
@@ -116,18 +117,20 @@ function drawDetours(search) {
 }
 
 function drawPath(search) {
-  if (search.path.length < 2 || shortened() === 0) return;
-  const part = Math.min(1, 1.4 * shortened());
+  // The path of a running node is shown at once, whatever is still to be seen of its search.
+  const part = data.live ? 1 : Math.min(1, 1.4 * shortened());
+  if (search.path.length < 2 || part === 0) return;
+  const colour = search.path_colour ?? search.colour;
   for (const path of search.others) {
     line(firstPart(path, part));
     stroke('#FFFFFF', 5, 1);
     context.setLineDash([9 / view.scale, 6 / view.scale]);
-    stroke(search.colour, 2.5, 1);
+    stroke(colour, 2.5, 1);
     context.setLineDash([]);
   }
   line(firstPart(search.path, part));
   stroke('#FFFFFF', 7, 1);
-  stroke(search.colour, 4, 1);
+  stroke(colour, 4, 1);
 }
 
 function drawEnds() {
@@ -137,8 +140,8 @@ function drawEnds() {
     context.arc(goal[0], goal[1], radius, 0, 2 * Math.PI);
     stroke('#22262B', 1.5, 0.7);
   }
-  dot(start[0], start[1], 7, '#22262B');
-  star(goal[0], goal[1], 11);
+  if (start) dot(start[0], start[1], 7, '#22262B');
+  if (goal) star(goal[0], goal[1], 11);
 }
 
 function line(points) {

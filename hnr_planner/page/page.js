@@ -1,4 +1,4 @@
-// Controls of the page (buttons, layers, keys), and its start.
+// Controls of the page: buttons, layers, keys.
 
 const LAYER_NAMES = {
   samples: 'samples', tree: 'tree', chord: 'chord', detours: 'path as found', path: 'path',
@@ -63,6 +63,8 @@ function addKind([name, colour]) {
   byId('kinds').append(item);
 }
 
+const wantsMotion = () => !matchMedia('(prefers-reduced-motion: reduce)').matches;
+
 const KEYS = {
   ' ': () => play(!playing),
   ArrowRight: () => step(1),
@@ -90,14 +92,8 @@ function pressKey(event) {
   act();
 }
 
-function begin() {
-  const [from, to] = [data.start, data.goal].map((p) => p.map((a) => +a.toFixed(2)).join(', '));
-  byId('from').textContent += ` (${from})`;
-  byId('to').textContent += ` (${to})`;
-  byId('options').textContent = data.options.join(', ');
-  searches.forEach(addAlgorithm);
+function addControls() {
   Object.keys(LAYERS).forEach(addLayer);
-  data.kinds.forEach(addKind);
   byId('panel').open = !NARROW.matches;
   byId('play').addEventListener('click', () => play(!playing));
   byId('time').addEventListener('input', (event) => {
@@ -118,10 +114,4 @@ function begin() {
   canvas.addEventListener('dblclick', fit);
   addEventListener('keydown', pressKey);
   addEventListener('resize', () => (fitted ? fit() : redraw()));
-  fit();
-  setTime(0);
-  play(!matchMedia('(prefers-reduced-motion: reduce)').matches);
 }
-
-image.addEventListener('load', begin);
-image.src = data.map.image;
