@@ -68,6 +68,8 @@ setup(
             'ros-jazzy-common-interfaces==5.3.*',
             'ros-jazzy-rclpy[fastrtps]==7.1.*',
         ],
+        # The command `experiment --dask`, and joblib's back end of that name.
+        'cluster': ['dask>=2024.1', 'distributed>=2024.1'],
         # `sample(..., n_jobs=)`.
         'joblib': ['joblib>=1.3'],
         # For those who hand draws on to it; the package itself does without.
