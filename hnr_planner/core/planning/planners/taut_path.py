@@ -44,9 +44,9 @@ def step_aside(space, points, margin):
     """
     Return a free path (k, 2) along ``points`` (m, 2) that passes every corner at the margin.
 
-    A segment between two points is blocked only where it grazes a corner, possibly because its
-    ends were moved off their corners. Then the path gets another vertex at the margin from the
-    corner that is grazed.
+    A segment between two points is blocked only where it grazes a corner or a wall along it,
+    possibly because its ends were moved off their corners. Then the path gets another vertex at
+    the margin from the corner that is grazed, or from the one at which the wall ends.
     """
     aside = np.empty((GRAZED_MAX * len(points), 2))
     copy_into(aside[0], points[0])
@@ -59,8 +59,7 @@ def step_aside(space, points, margin):
         u = end - a
         t = first_exit(space, a, u, 0.0, 1.0) if u.any() else 2.0
         if t <= 1.0 and n + n_pending + 2 < len(aside):
-            corner = np.round(a + t * u)
-            step = _step_from(space.free_distance, int(corner[0]), int(corner[1]))
+            corner, step = _grazed_corner(space.free_distance, np.round(a + t * u), u)
             bend = corner + margin * step
             if step.any() and distance(bend, a) > 0.0 and distance(bend, end) > 0.0:
                 copy_into(pending[n_pending], bend)
@@ -73,6 +72,36 @@ def step_aside(space, points, margin):
         else:
             k += 1
     return aside[:n].copy()
+
+
+@kernel
+def _grazed_corner(free_distance, corner, u):
+    """
+    Return the corner that a segment grazes, and the direction (2,) away from its blocked cell.
+
+    ``corner`` (2,) is the grid point where the segment along ``u`` (2,) meets a blocked cell. Where
+    that is a point of a straight wall, the corner is the end of the wall ahead. The direction is
+    (0, 0) where there is no such corner.
+    """
+    along = np.zeros(2)
+    axis = 0 if abs(u[0]) > abs(u[1]) else 1
+    along[axis] = 1.0 if u[axis] > 0.0 else -1.0
+    step = _step_from(free_distance, int(corner[0]), int(corner[1]))
+    while not step.any() and _is_on_wall(free_distance, int(corner[0]), int(corner[1]), axis):
+        corner = corner + along
+        step = _step_from(free_distance, int(corner[0]), int(corner[1]))
+    return corner, step
+
+
+@kernel
+def _is_on_wall(free_distance, x, y, axis):
+    """Return whether a wall along x (``axis`` 0) or y (1) passes through the grid point (x, y)."""
+    first, last = free_distance[y - 1, x - 1] == 0, free_distance[y, x] == 0
+    if axis == 0:
+        below, above = free_distance[y - 1, x] == 0, free_distance[y, x - 1] == 0
+    else:
+        below, above = free_distance[y, x - 1] == 0, free_distance[y - 1, x] == 0
+    return first == below and last == above and first != last
 
 
 @kernel
