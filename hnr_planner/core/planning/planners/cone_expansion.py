@@ -14,6 +14,7 @@ from hnr_planner.core.planning.planners.cones import (
     AT_ONCE,
     CORNER,
     DISTANCE,
+    empty_frontier,
     is_over,
     LEFT_X,
     LEFT_Y,
@@ -22,6 +23,7 @@ from hnr_planner.core.planning.planners.cones import (
     N_OPEN,
     N_VERTICES,
     NONE,
+    open_frontier,
     pop,
     PORTAL,
     push,
@@ -34,12 +36,37 @@ from hnr_planner.core.planning.planners.cones import (
     X,
     Y,
 )
-from hnr_planner.core.planning.planners.target import holds_target
+from hnr_planner.core.planning.planners.target import holds_target, make_target
 from hnr_planner.core.spaces.grid.slabs import LEFT, RIGHT
 import numpy as np
 
 #: Ratio of the length of a path to that of another below which the former counts as shorter.
 NEARER = 1.0 - 1e-13
+
+
+@kernel
+def begin(slabs, start, goal, radius, margin, rows, n_iterations):
+    """
+    Begin a search and expand its first nodes; return (frontier, target, number of expansions).
+
+    Parameters
+    ----------
+    slabs : Slabs
+        The slabs of the grid.
+    start, goal : (2,)
+        Start, and goal or centre of the goal region, kernel frame.
+    radius, margin : float
+        Radius of the goal region, 0 for none, and margin of the space [cells].
+    rows : int
+        Rows of the arrays of the frontier.
+    n_iterations : int
+        Largest number of expansions.
+
+    """
+    target = make_target(slabs, goal, radius, margin)
+    frontier = empty_frontier(slabs, rows)
+    open_frontier(slabs, frontier, start, target)
+    return frontier, target, expand(slabs, frontier, target, n_iterations)
 
 
 @kernel

@@ -74,21 +74,25 @@ class Frontier(NamedTuple):
     sizes: NDArray[np.int64]
 
 
-def empty_frontier(n_portals: int, n_slabs: int, at_once: int, rows: int) -> Frontier:
+@kernel
+def empty_frontier(slabs, rows):
     """
-    Return the state of a search that has no nodes yet, with arrays of at least ``rows`` rows.
+    Return the state of a search among ``slabs`` that has no nodes yet.
 
-    ``at_once`` is the number of rows that one expansion may fill (``rows_at_once``).
+    Its arrays have at least ``rows`` rows, and as many as one expansion may fill.
     """
+    at_once = 3 * slabs.most_portals + 7
     rows = max(rows, at_once)
+    sizes = np.zeros(5, dtype=np.int64)
+    sizes[FINAL], sizes[AT_ONCE] = NONE, at_once
     return Frontier(
         np.empty((rows, 7)),
         np.empty((rows, 5)),
         np.empty(rows),
         np.empty(rows, dtype=np.int64),
-        np.full(2 * n_portals, np.inf),
-        np.empty(n_slabs, dtype=np.bool_),
-        np.array([0, 0, 0, NONE, at_once]),
+        np.full(2 * len(slabs.portals), np.inf),
+        np.empty(len(slabs.boxes), dtype=np.bool_),
+        sizes,
     )
 
 
@@ -133,16 +137,6 @@ def open_frontier(slabs, frontier, start, target):
             left, right, line = slabs.portals[k, 0], slabs.portals[k, 1], slabs.portals[k, 2]
             add_node(slabs, frontier, 0, left, line, right, line, k, up)
     push_new(slabs, frontier, target, 0)
-
-
-@kernel
-def rows_at_once(slabs):
-    """Return the rows that the first nodes of a search, or one expansion, fill at most."""
-    most = 0
-    for slab in range(len(slabs.boxes)):
-        above = slabs.above[slab, 1] - slabs.above[slab, 0]
-        most = max(most, int(above + slabs.below[slab, 1] - slabs.below[slab, 0]))
-    return 3 * most + 7
 
 
 @kernel
