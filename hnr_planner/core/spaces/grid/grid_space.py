@@ -271,11 +271,6 @@ class GridSpace(FramedSpace):
         return build_slabs(self.data.free_distance)
 
     @cached_property
-    def cleared(self) -> dict[float, 'GridSpace']:
-        """The space that ``kept_clear`` has made last, by its clearance [m]."""
-        return {}
-
-    @cached_property
     def island_points(self) -> Floats:
         """
         One point (k, 2) in each component of blocked cells that does not touch the rim.
