@@ -14,6 +14,7 @@ from hnr_planner.core.kernels.borrowed import borrowed
 from hnr_planner.core.kernels.copies import copy_into
 from hnr_planner.core.kernels.kernel import kernel
 from hnr_planner.core.lengths import distance
+from hnr_planner.core.planning.planners.cones import side_of
 from hnr_planner.core.planning.planners.target import off_line
 from hnr_planner.core.planning.planners.taut_path import step_aside
 from hnr_planner.core.spaces.grid.slabs import LEFT, RIGHT, slab_at
@@ -172,4 +173,4 @@ def _equal(a, b):
 @kernel
 def _side_of(a, b, p):
     """Return a number > 0 where ``p`` is left of the line from ``a`` to ``b``, < 0 right of it."""
-    return (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0])
+    return side_of(a[0], a[1], b[0], b[1], p[0], p[1])

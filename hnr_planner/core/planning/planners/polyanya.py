@@ -25,12 +25,12 @@ from hnr_planner.core.planning.planners.cones import (
     FINAL,
     Frontier,
     N_NODES,
-    N_OPEN,
     N_VERTICES,
     NONE,
     PARENT,
     with_more_rows,
 )
+from hnr_planner.core.planning.planners.heap import N_OPEN
 from hnr_planner.core.planning.planners.target import Target
 from hnr_planner.core.planning.planners.taut_path import points_reached, taut_path
 from hnr_planner.core.spaces.grid.grid_space import GridSpace
