@@ -57,6 +57,7 @@ def application(hub: Hub, title: str, token: str | None, plan: Planning | None) 
         'start': None,
         'goal': None,
         'goal_radius': 0.0,
+        'footprint': [],
         'simplify': True,
     }
     page = live_page(title, state)
