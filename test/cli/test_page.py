@@ -13,7 +13,7 @@ import json
 import math
 from pathlib import Path
 import re
-from test.browser import ActionChains, BrowserPage, Keys, open_browser
+from test.browser import ActionChains, BrowserPage, By, Keys, open_browser
 from test.cli.conftest import at, OFFICE, Ran
 from typing import Any
 
