@@ -28,6 +28,10 @@ CHANGE, TURN = 1.0, 0.5
 #: reaches.
 WEIGHT = 0.5
 
+#: Distance [cells] before a contact at which motions stop, at the least: a path that touches an
+#: obstacle but for rounding is of no use to a robot.
+STAND_OFF = 1e-3
+
 
 @dataclass(frozen=True)
 class PoseRequest:
@@ -92,7 +96,7 @@ class PoseRequest:
             guide,
             disc.centre / space.scale,
             WEIGHT * (1.0 / data.max_curvature if data.drive == CAR else data.reach),
-            space.margin,
+            max(space.margin, STAND_OFF),
         )
 
     def goals(self) -> Floats:
