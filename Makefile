@@ -48,9 +48,9 @@ install: $(ALL)
 
 $(DEMO): EXTRAS := ros,plot
 $(DEMO): STAMPS := $(DEMO)
-$(TEST): EXTRAS := ros,plot,experiments,cluster,test
+$(TEST): EXTRAS := ros,plot,experiments,cluster,watch,test
 $(TEST): STAMPS := $(DEMO) $(TEST)
-$(ALL): EXTRAS := ros,plot,experiments,cluster,test,check,docs
+$(ALL): EXTRAS := ros,plot,experiments,cluster,watch,test,check,docs
 $(ALL): STAMPS := $(DEMO) $(TEST) $(ALL)
 
 SUITABLE := import ensurepip, sys, venv; sys.exit(not (3, 11) <= sys.version_info[:2] <= (3, 13))

@@ -60,6 +60,8 @@ setup(
         'plot': ['matplotlib>=3.6'],
         # The command `experiment`.
         'experiments': ['joblib>=1.3', 'matplotlib>=3.6', 'tqdm>=4.66'],
+        # The command `watch` and the parameter `watch_port`.
+        'watch': ['matplotlib>=3.6', 'tornado>=6.4'],
         # ROS 2 Jazzy as wheels, for machines without ROS (x86-64 Linux). Never install these
         # beside a ROS from apt.
         'ros': [

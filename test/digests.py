@@ -48,8 +48,8 @@ from numpy.typing import NDArray
 
 ROOT = Path(__file__).resolve().parents[1]
 MAPS = Path(os.environ.get('HNR_MAPS', '/nonexistent'))
-#: Fields of a result that depend on the clock.
-TIMES = ('elapsed',)
+#: Fields of a result that depend on the clock; a message may state a time.
+TIMES = ('elapsed', 'message')
 #: Options of ``plan`` that are tried with ``auto``.
 OPTIONS: dict[str, dict[str, Any]] = {
     'as found': {'simplify': False},

@@ -46,6 +46,7 @@ LAYERS = (
     'hnr_planner.page',
     'hnr_planner.ros',
     'hnr_planner.demo',
+    'hnr_planner.watch',
     'hnr_planner.cli',
     'hnr_planner.__main__',
 )
@@ -177,6 +178,7 @@ def test_pip_requirements_are_what_a_robot_imports(distribution: Any) -> None:
     [
         ('plot', ('hnr_planner.drawing', 'hnr_planner.page', 'hnr_planner.demo')),
         ('experiments', ('hnr_planner.drawing', 'hnr_planner.experiments')),
+        ('watch', ('hnr_planner.drawing', 'hnr_planner.page', 'hnr_planner.watch')),
     ],
 )
 def test_an_extra_is_what_its_layers_import_besides(

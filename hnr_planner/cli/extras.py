@@ -11,6 +11,7 @@ EXTRAS = {
     'plot': ('matplotlib',),
     'experiments': ('joblib', 'matplotlib', 'tqdm'),
     'cluster': ('dask', 'distributed'),
+    'watch': ('matplotlib', 'tornado'),
 }
 
 

@@ -24,7 +24,6 @@ from hnr_planner.core.planning.planner import make_problem, Problem, with_capaci
 from hnr_planner.core.planning.planners.cones import (
     empty_frontier,
     Frontier,
-    rows_at_once,
     with_more_rows,
 )
 from hnr_planner.core.planning.planners.polyanya import INITIAL_CAPACITY
@@ -98,6 +97,5 @@ class _Worker:
     def _go_on(self, ends: Floats, progress: Progress) -> int:
         slabs, most = self.space.slabs, self.budget.max_iterations
         if self._frontier is None:
-            sizes = len(slabs.portals), len(slabs.boxes), rows_at_once(slabs)
-            self._frontier = empty_frontier(*sizes, INITIAL_CAPACITY)
+            self._frontier = empty_frontier(slabs, INITIAL_CAPACITY)
         return go_on(self.problem, slabs, ends, most, self._frontier, progress, CONES_AT_ONCE)

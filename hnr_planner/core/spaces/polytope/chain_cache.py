@@ -13,7 +13,7 @@ layout of the normals: hence the length of this module.
 """
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from hnr_planner.core.checks import Floats
 from hnr_planner.core.kernels.kernel import inlined, kernel
@@ -69,8 +69,7 @@ class PolytopeCache(NamedTuple):
 
 
 @memory_size.register(PolytopeData)
-@kernel
-def _memory_size(polytope, dim):
+def _memory_size(polytope: Any, dim: int) -> int:
     """Return the number of floats that store a point, slacks, rates and ratios."""
     return dim + 3 * len(polytope.offsets)
 
