@@ -5,7 +5,8 @@ from __future__ import annotations
 import argparse
 from typing import Any, TYPE_CHECKING
 
-from hnr_planner.cli.arguments import BadInputError, length, positive
+from hnr_planner.cli.argument_types import length, positive
+from hnr_planner.cli.arguments import BadInputError
 
 if TYPE_CHECKING:
     from hnr_planner.core import GridSpace, PlanResult, PoseSpace

@@ -5,18 +5,13 @@ from __future__ import annotations
 import argparse
 from typing import Any
 
+from hnr_planner.cli.argument_types import count, length, page, picture, positive, whole
 from hnr_planner.cli.arguments import (
     add_command,
     add_map_arguments,
-    count,
     keep_map_files,
-    length,
     listing,
     open_map,
-    page,
-    picture,
-    positive,
-    whole,
 )
 from hnr_planner.cli.extras import require_extra
 from hnr_planner.cli.footprint import (

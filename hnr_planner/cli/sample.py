@@ -8,17 +8,13 @@ import secrets
 import sys
 from typing import TextIO, TYPE_CHECKING
 
+from hnr_planner.cli.argument_types import count, output_file, picture, positive, whole
 from hnr_planner.cli.arguments import (
     add_command,
     add_map_arguments,
     BadInputError,
-    count,
     keep_map_files,
     open_map,
-    output_file,
-    picture,
-    positive,
-    whole,
 )
 from hnr_planner.cli.extras import require_extra
 
