@@ -13,7 +13,7 @@ from hnr_planner.core.planning.registry import ALGORITHMS
 from hnr_planner.core.planning.result import PlanResult
 from hnr_planner.core.spaces import GridSpace, PoseSpace
 from hnr_planner.maps import is_moving_ai, OccupancyMap
-from hnr_planner.page import Shown, write_page
+from hnr_planner.page.write import Shown, write_page
 
 
 def write_plan_page(

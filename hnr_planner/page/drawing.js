@@ -9,7 +9,7 @@ const NICE_LENGTHS = [0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2
 
 const canvas = byId('view');
 const context = canvas.getContext('2d');
-const image = new Image();
+let image = new Image();
 let drawing = false;
 
 function redraw() {
@@ -52,6 +52,7 @@ function draw() {
 }
 
 function drawMap() {
+  if (!data.map) return;
   const {origin: [x, y, yaw], resolution} = data.map;
   context.save();
   context.translate(x, y);
@@ -121,22 +122,24 @@ function drawDetours(search) {
 }
 
 function drawPath(search) {
-  if (search.path.length < 2 || shortened() === 0) return;
   const part = partShown();
+  if (search.path.length < 2 || part === 0) return;
+  const colour = search.path_colour ?? search.colour;
   for (const path of search.others) {
     line(firstPart(path, part));
     stroke('#FFFFFF', 5, 1);
     context.setLineDash([9 / view.scale, 6 / view.scale]);
-    stroke(search.colour, 2.5, 1);
+    stroke(colour, 2.5, 1);
     context.setLineDash([]);
   }
   line(firstPart(search.path, part));
   stroke('#FFFFFF', 7, 1);
-  stroke(search.colour, 4, 1);
+  stroke(colour, 4, 1);
 }
 
-// The part of a path that is shown now: it is drawn from its start on.
-const partShown = () => Math.min(1, 1.4 * shortened());
+// The part of a path that is shown now: it is drawn from its start on. The path of a running node
+// is shown at once, whatever is still to be seen of its search.
+const partShown = () => (data.live ? 1 : Math.min(1, 1.4 * shortened()));
 
 // Add the outline of the footprint at a pose to the path of the context.
 function addOutline([x, y, yaw]) {
@@ -150,7 +153,7 @@ function addOutline([x, y, yaw]) {
 
 // What the footprint has swept so far, and some of its outlines.
 function drawSweep(search) {
-  if (!data.footprint.length || search.path.length < 2 || shortened() === 0) return;
+  if (!data.footprint.length || search.path.length < 2 || partShown() === 0) return;
   const poses = firstPart(search.path, partShown());
   context.beginPath();
   poses.forEach(addOutline);
@@ -166,7 +169,7 @@ function drawSweep(search) {
 
 // The robot on its way along the path.
 function drawRobot(search) {
-  if (!data.footprint.length || search.path.length < 2 || shortened() === 0) return;
+  if (!data.footprint.length || search.path.length < 2 || partShown() === 0) return;
   context.beginPath();
   addOutline(firstPart(search.path, partShown()).at(-1));
   context.fillStyle = '#FFFFFF';
@@ -187,8 +190,8 @@ function drawEnds() {
     [start, goal].forEach(addOutline);
     stroke('#22262B', 1.5, 0.7);
   }
-  dot(start[0], start[1], 7, '#22262B');
-  star(goal[0], goal[1], 11);
+  if (start) dot(start[0], start[1], 7, '#22262B');
+  if (goal) star(goal[0], goal[1], 11);
 }
 
 function line(points) {

@@ -1,4 +1,4 @@
-// Controls of the page (buttons, layers, keys), and its start.
+// Controls of the page: buttons, layers, keys.
 
 const LAYER_NAMES = {
   footprint: 'footprint', samples: 'samples', tree: 'tree', chord: 'chord',
@@ -65,6 +65,8 @@ function addKind([name, colour]) {
   byId('kinds').append(item);
 }
 
+const wantsMotion = () => !matchMedia('(prefers-reduced-motion: reduce)').matches;
+
 const KEYS = {
   ' ': () => play(!playing),
   ArrowRight: () => step(1),
@@ -92,15 +94,9 @@ function pressKey(event) {
   act();
 }
 
-function begin() {
-  const [from, to] = [data.start, data.goal].map((p) => p.map((a) => +a.toFixed(2)).join(', '));
-  byId('from').textContent += ` (${from})`;
-  byId('to').textContent += ` (${to})`;
-  byId('options').textContent = data.options.join(', ');
-  searches.forEach(addAlgorithm);
+function addControls() {
   const without = data.footprint.length ? 'detours' : 'footprint';
   Object.keys(LAYERS).filter((name) => name !== without).forEach(addLayer);
-  data.kinds.forEach(addKind);
   byId('panel').open = !NARROW.matches;
   byId('play').addEventListener('click', () => play(!playing));
   byId('time').addEventListener('input', (event) => {
@@ -121,10 +117,4 @@ function begin() {
   canvas.addEventListener('dblclick', fit);
   addEventListener('keydown', pressKey);
   addEventListener('resize', () => (fitted ? fit() : redraw()));
-  fit();
-  setTime(0);
-  play(!matchMedia('(prefers-reduced-motion: reduce)').matches);
 }
-
-image.addEventListener('load', begin);
-image.src = data.map.image;

@@ -223,6 +223,14 @@ class Settings(RobotSettings):
     rviz_clicks: bool = setting(
         False, 'Listen to the click tools of RViz: initialpose keeps the start, goal_pose plans.'
     )
+    watch_port: int = setting(
+        0,
+        'Port on which this machine alone can look at the node in a browser; 0: none. Read only: '
+        'set it when the node starts.',
+        lower=0,
+        upper=65535,
+        read_only=True,
+    )
     autostart: bool = setting(
         True,
         'Whether the node configures and activates itself; false: the transitions come from '

@@ -16,6 +16,7 @@ from hnr_planner.ros.node.callback_group import BoundedCallbackGroup
 from hnr_planner.ros.node.managed_node import ManagedNode
 from hnr_planner.ros.node.parameters import Parameters, warn_of_unknown_parameters
 from hnr_planner.ros.node.transforms import Transforms
+from hnr_planner.ros.node.watch_process import WatchProcess
 from hnr_planner.server.map_store import MapSnapshot
 from hnr_planner.server.outcomes import Outcome, Refusal
 from hnr_planner.server.requests import Pose
@@ -103,6 +104,8 @@ class PlannerNode(ManagedNode):
             )
         self._rviz_tools = RvizTools(self, self._server, lambda: self.settings, searches)
         self._rviz_tools.listen(self.settings.rviz_clicks)
+        port = self.settings.watch_port
+        self._watch = WatchProcess(self, port) if port else None
 
     @property
     def settings(self) -> Settings:
@@ -159,6 +162,8 @@ class PlannerNode(ManagedNode):
 
     def destroy_node(self) -> None:
         """Publish what still waits to be published, then destroy the node."""
+        if self._watch is not None:
+            self._watch.close()
         self._server.close()
         super().destroy_node()
 
