@@ -29,6 +29,7 @@ help:
 	@echo 'make demo KEEP=1           leave the nodes running, to try calls by hand'
 	@echo 'make test                  run the tests (ARGS="-k name -x" goes to pytest)'
 	@echo 'make compiled              those tests as machine code that else run interpreted'
+	@echo 'make digests               whether interpreted kernels and machine code agree to the bit'
 	@echo 'make soak                  the nodes under load and faults, for a quarter of an hour'
 	@echo 'make check                 format, lint, types, spelling, the site, then the tests'
 	@echo 'make bench                 side by side with OMPL, grid search and hopsy, half an hour'
@@ -47,9 +48,9 @@ install: $(ALL)
 
 $(DEMO): EXTRAS := ros,plot
 $(DEMO): STAMPS := $(DEMO)
-$(TEST): EXTRAS := ros,plot,experiments,watch,test
+$(TEST): EXTRAS := ros,plot,experiments,cluster,watch,test
 $(TEST): STAMPS := $(DEMO) $(TEST)
-$(ALL): EXTRAS := ros,plot,experiments,watch,test,check,docs
+$(ALL): EXTRAS := ros,plot,experiments,cluster,watch,test,check,docs
 $(ALL): STAMPS := $(DEMO) $(TEST) $(ALL)
 
 SUITABLE := import ensurepip, sys, venv; sys.exit(not (3, 11) <= sys.version_info[:2] <= (3, 13))
@@ -97,6 +98,11 @@ test: $(TEST)
 compiled: $(TEST)
 	HNR_COMPILE_ALL=1 $(VENV) -m pytest -m interpreted $(PARALLEL) $(ARGS)
 
+# BEFORE=FILE compares with the digests that another version wrote.
+.PHONY: digests
+digests: $(TEST)
+	$(VENV) -m test.digests $(if $(BEFORE),--before '$(BEFORE)') $(ARGS)
+
 .PHONY: soak
 soak: $(TEST)
 	HNR_SOAK=1 $(VENV) -m pytest test/ros/soak $(ARGS)
@@ -112,7 +118,7 @@ check: lint
 docs: $(ALL)
 	rm -rf docs/_build/source
 	mkdir -p docs/_build/source
-	tar -C docs --exclude=./_build --dereference -c . | tar -C docs/_build/source -x
+	tar -C docs --exclude=./_build --exclude=./hnr_planner --dereference -c . | tar -C docs/_build/source -x
 	$(VENV) -m sphinx -q -W --keep-going docs/_build/source docs/_build/html
 	@echo 'The site begins at docs/_build/html/index.html.'
 

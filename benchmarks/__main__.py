@@ -23,6 +23,7 @@ from benchmarks.interpreted import interpreted
 from benchmarks.kinodynamic import kinodynamic
 from benchmarks.picture import draw
 from benchmarks.pinned import on_one_core
+from benchmarks.poses import poses
 from benchmarks.problems import missing_maps, Problem, problems
 from benchmarks.progress import say
 from benchmarks.properties import properties
@@ -50,6 +51,7 @@ SECTIONS: tuple[SectionOf, ...] = (
     rounded_sampling,
     clearance,
     kinodynamic,
+    poses,
     answers,
     properties,
     interpreted,

@@ -10,6 +10,7 @@ from hnr_planner.cli.arguments import BadInputError
 EXTRAS = {
     'plot': ('matplotlib',),
     'experiments': ('joblib', 'matplotlib', 'tqdm'),
+    'cluster': ('dask', 'distributed'),
     'watch': ('matplotlib', 'tornado'),
 }
 

@@ -1,9 +1,11 @@
 // Controls of the page: buttons, layers, keys.
 
 const LAYER_NAMES = {
-  samples: 'samples', tree: 'tree', chord: 'chord', detours: 'path as found', path: 'path',
+  footprint: 'footprint', samples: 'samples', tree: 'tree', chord: 'chord',
+  detours: 'path as found', path: 'path',
 };
 const LAYER_MARKS = {
+  footprint: '<path d="M4 3H18V9H4Z" stroke-width="1.5"/>',
   samples: '<path d="M5 8h0M16 4h0" stroke-width="5"/>',
   tree: '<path d="M1 10 11 3 21 9" stroke-width="1" opacity=".6"/>',
   chord: '<path d="M0 6H22" opacity=".55"/><path d="M7 6H15" stroke-width="3.5"/>',
@@ -93,7 +95,8 @@ function pressKey(event) {
 }
 
 function addControls() {
-  Object.keys(LAYERS).forEach(addLayer);
+  const without = data.footprint.length ? 'detours' : 'footprint';
+  Object.keys(LAYERS).filter((name) => name !== without).forEach(addLayer);
   byId('panel').open = !NARROW.matches;
   byId('play').addEventListener('click', () => play(!playing));
   byId('time').addEventListener('input', (event) => {

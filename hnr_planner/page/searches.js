@@ -53,6 +53,7 @@ function caption() {
   if (time === 1 && on.length === 1) return `The path: ${outcome(only)}.`;
   if (time === 1) return 'The thick lines are the paths.';
   if (!data.simplify) return 'A path is found, and returned as it is.';
+  if (data.footprint.length) return 'A path is found. Parts of it give way to shorter motions.';
   return 'A path is found. Points of it that see each other are joined by a straight line.';
 }
 

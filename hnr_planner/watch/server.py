@@ -50,13 +50,14 @@ def application(hub: Hub, title: str, token: str | None, plan: Planning | None) 
         Plans where a page was clicked; None where pages are to look at only.
 
     """
-    state = {
+    state: dict[str, Any] = {
         'live': True,
         'requests': plan is not None,
         'map': None,
         'start': None,
         'goal': None,
         'goal_radius': 0.0,
+        'footprint': [],
         'simplify': True,
     }
     page = live_page(title, state)

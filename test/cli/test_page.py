@@ -18,6 +18,7 @@ from test.cli.conftest import at, OFFICE, Ran
 from typing import Any
 
 from hnr_planner.core import GridSpace, plan
+from hnr_planner.core.planning.poses.search import POSE_PLANNERS
 from hnr_planner.core.planning.registry import PLANNERS
 from hnr_planner.maps import load_map, OccupancyMap
 from hnr_planner.page.write import COLOURS, path_as_found
@@ -315,6 +316,50 @@ def test_a_search_without_a_path_is_shown_too(
     page = Page(browser, file)
     page.go_to(Keys.END)
     assert 'unreachable' in page.text('#algorithms')
+    assert page.errors() == []
+
+
+def test_a_robot_with_a_footprint_moves_along_its_path(
+    browser: Any, run: Callable[..., Ran], rooms: OccupancyMap, rooms_file: Path, tmp_path: Path
+) -> None:
+    file = tmp_path / 'page.html'
+    start, goal = (*at(rooms, 8, 8), 0.4), (*at(rooms, 10, 70), 3.5)
+    robot = ('--footprint', '[[0.3, 0.2], [0.3, -0.2], [-0.2, -0.2], [-0.2, 0.2]]', '--seed', 1)
+    limits = ('--optimize-for', 0, '--time-limit', 600)
+    ran = run(
+        'plan', rooms_file, '--start', *start, '--goal', *goal, *robot, *limits, '--html', file
+    )
+    assert ran.code == 0, ran.err
+    data = data_of(file)
+    (asked,) = (search for search in data['searches'] if search['asked'])
+    assert [search['name'] for search in data['searches']] == list(POSE_PLANNERS)
+    poses = np.array(asked['path'])
+    np.testing.assert_allclose(poses[0], start)
+    turned = poses[-1] - goal
+    assert np.hypot(*turned[:2]) < 1e-9 and abs(np.sin(turned[2] / 2.0)) < 1e-9
+    # So that the page can interpolate them: no jump by a whole turn.
+    assert np.abs(np.diff(poses, axis=0)).max() <= 0.1 + 1e-9
+    page = Page(browser, file)
+    names = '[...document.querySelectorAll("#layers input")].map((box) => box.name)'
+    assert browser.execute_script(f'return {names}') == [
+        'footprint',
+        'samples',
+        'tree',
+        'chord',
+        'path',
+    ]
+    page.pause()
+    for layer in ('samples', 'tree', 'chord', 'path'):
+        page.find(f'#layers [name="{layer}"]').click()
+    seen = []
+    for time in (0.9, 0.95):
+        browser.execute_script(f'setTime({time})')
+        assert page.has(asked['colour'])  # the robot on its way
+        seen.append(page.pixels())
+    assert (seen[0] != seen[1]).any()
+    page.find('#layers [name="footprint"]').click()
+    assert not page.has(asked['colour'])
+    assert 'footprint of 0.5 x 0.4 m' in page.text('#options')
     assert page.errors() == []
 
 

@@ -38,12 +38,12 @@ def serialised_samples(result: SearchResult | None, limit: int, header: Header) 
 
     ``index`` is the number of a point in the cloud; ``parent`` is the ``index`` of the sample from
     which a sample was grown, -1 for a root. Parents are in the cloud. Without a result the cloud
-    is empty.
+    is empty. Of poses the positions are given.
     """
     if result is None:
         return _cloud(np.empty((0, 2)), np.empty(0), header)
     subsample = subsample_tree(result.parents, limit)
-    return _cloud(result.samples[subsample.rows], subsample.parents, header)
+    return _cloud(result.samples[subsample.rows, :2], subsample.parents, header)
 
 
 def serialised_draws(response: SampleResponse, header: Header) -> bytes:
