@@ -62,6 +62,8 @@ N_PAIRS, N_PAIRS_QUICK = 200, 20
 #: Targets: CPU time [s] of an answer besides its search, also as a multiple of the ready-made
 #: answer's, and the longest time [s] for which an answer keeps the interpreter to itself.
 MOST_CPU, MOST_CPU_RATIO, MOST_HOLD = 5e-3, 0.2, 2e-3
+#: Namespace of a node that sends a ready-made path of one pose: what rclpy alone costs.
+BARE = '/bare'
 #: Ends [m] of the path whose start sees its goal, on an empty map, and its number of poses.
 SEEN_START, SEEN_GOAL, SEEN_POSES = (1.0, 1.0), (19.0, 19.0), 2032
 #: Clients that ask at once as fast as answers come, for so long [s]; and the target: answers a
@@ -133,7 +135,7 @@ def _compared(caller: _Caller, goal: PoseStamped, n_pairs: int) -> Iterator[Verd
     with _process('benchmarks.ready_made', str(n_poses)):
         for listening in (False, True):
             listener = caller.listener() if listening else None
-            caller.meet_ready_made(goal)
+            caller.meet_ready_made(caller.ready_made, goal)
             pairs = [caller.pair(goal) for _ in range(n_pairs)]
             if listener is not None:
                 listener.destroy_node()
@@ -144,25 +146,32 @@ def _costs(caller: _Caller, pid: int, n_pairs: int) -> Iterator[Verdict]:
     """Measure the CPU time of the process ``pid`` for an answer that needs no search."""
     goal = pose(*SEEN_GOAL)
     n_poses = len(caller.ask(caller.planner, goal, start=SEEN_START)[0].poses)
-    with _process('benchmarks.ready_made', str(n_poses)) as ready_made:
-        caller.meet_ready_made(goal)
+    bare = '--ros-args', '-r', f'__ns:={BARE}'
+    with (
+        _process('benchmarks.ready_made', str(n_poses)) as ready_made,
+        _process('benchmarks.ready_made', '1', *bare) as of_one_pose,
+    ):
+        caller.meet_ready_made(caller.ready_made, goal)
+        caller.meet_ready_made(caller.bare, goal)
         for listening in (False, True):
             listener = caller.listener() if listening else None
             costs = [
                 (
                     cost_of(lambda: caller.ask(caller.planner, goal, start=SEEN_START), pid),
                     cost_of(lambda: caller.ask(caller.ready_made, goal), ready_made.pid),
+                    cost_of(lambda: caller.ask(caller.bare, goal), of_one_pose.pid),
                 )
                 for _ in range(n_pairs)
             ]
             if listener is not None:
                 listener.destroy_node()
-            ours, least = (median(times) for times in zip(*costs, strict=True))
+            ours, least, least_of_one = (median(times) for times in zip(*costs, strict=True))
             yield Verdict(
                 f'CPU time of the node for an answer of {n_poses} poses without a search, '
                 f'pictures {"" if listening else "not "}subscribed to',
                 f'{1e3 * MOST_CPU:g} ms, {MOST_CPU_RATIO} x',
-                f'{1e3 * ours:.2f} ms, ready-made {1e3 * least:.2f} ms: {ours / least:.2f} x',
+                f'{1e3 * ours:.2f} ms, ready-made {1e3 * least:.2f} ms: {ours / least:.2f} x; '
+                f'ready-made of one pose {1e3 * least_of_one:.2f} ms',
                 ours <= min(MOST_CPU, MOST_CPU_RATIO * least),
             )
 
@@ -241,6 +250,7 @@ class _Caller:
         )
         self.planner = self._node.create_client(GetPlan, '/hnr_planner/plan')
         self.ready_made = self._node.create_client(GetPlan, f'/{READY_MADE}/plan')
+        self.bare = self._node.create_client(GetPlan, f'{BARE}/{READY_MADE}/plan')
 
     def close(self) -> None:
         """End the client, so that nobody gets its map any more."""
@@ -259,12 +269,12 @@ class _Caller:
             node.create_subscription(kind, f'/hnr_planner/{topic}', _ignore, LATCHED, raw=True)
         return node
 
-    def meet_ready_made(self, goal: PoseStamped) -> None:
-        """Request the ready-made path until it comes: before discovery ends, answers get lost."""
+    def meet_ready_made(self, client: Client, goal: PoseStamped) -> None:
+        """Request a ready-made path until it comes: before discovery ends, answers get lost."""
         deadline = time.monotonic() + SOON
         while True:
             with suppress(TimeoutError):
-                self.ask(self.ready_made, goal, patience=1.0)
+                self.ask(client, goal, patience=1.0)
                 return
             if time.monotonic() > deadline:
                 raise TimeoutError('the ready-made path does not come')
