@@ -47,9 +47,9 @@ install: $(ALL)
 
 $(DEMO): EXTRAS := ros,plot
 $(DEMO): STAMPS := $(DEMO)
-$(TEST): EXTRAS := ros,plot,experiments,test
+$(TEST): EXTRAS := ros,plot,experiments,cluster,watch,test
 $(TEST): STAMPS := $(DEMO) $(TEST)
-$(ALL): EXTRAS := ros,plot,experiments,test,check,docs
+$(ALL): EXTRAS := ros,plot,experiments,cluster,watch,test,check,docs
 $(ALL): STAMPS := $(DEMO) $(TEST) $(ALL)
 
 SUITABLE := import ensurepip, sys, venv; sys.exit(not (3, 11) <= sys.version_info[:2] <= (3, 13))
@@ -112,7 +112,7 @@ check: lint
 docs: $(ALL)
 	rm -rf docs/_build/source
 	mkdir -p docs/_build/source
-	tar -C docs --exclude=./_build --dereference -c . | tar -C docs/_build/source -x
+	tar -C docs --exclude=./_build --exclude=./hnr_planner --dereference -c . | tar -C docs/_build/source -x
 	$(VENV) -m sphinx -q -W --keep-going docs/_build/source docs/_build/html
 	@echo 'The site begins at docs/_build/html/index.html.'
 

@@ -60,12 +60,16 @@ setup(
         'plot': ['matplotlib>=3.6'],
         # The command `experiment`.
         'experiments': ['joblib>=1.3', 'matplotlib>=3.6', 'tqdm>=4.66'],
+        # The command `watch` and the parameter `watch_port`.
+        'watch': ['matplotlib>=3.6', 'tornado>=6.4'],
         # ROS 2 Jazzy as wheels, for machines without ROS (x86-64 Linux). Never install these
         # beside a ROS from apt.
         'ros': [
             'ros-jazzy-common-interfaces==5.3.*',
             'ros-jazzy-rclpy[fastrtps]==7.1.*',
         ],
+        # The command `experiment --dask`, and joblib's back end of that name.
+        'cluster': ['dask>=2024.1', 'distributed>=2024.1'],
         # `sample(..., n_jobs=)`.
         'joblib': ['joblib>=1.3'],
         # For those who hand draws on to it; the package itself does without.

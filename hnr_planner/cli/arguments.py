@@ -27,6 +27,10 @@ BAD_INPUT = 2
 #: File name endings of pages and of pictures.
 PAGES = ('.html', '.htm')
 PICTURES = ('.png', '.svg', '.pdf')
+#: The option with which points are poses, and the numbers of a point and of a pose.
+FOOTPRINT, POINT, POSE = '--footprint', ('X', 'Y'), ('X', 'Y', 'YAW')
+#: Numbers in words.
+NUMBER_WORDS = {2: 'two', 3: 'three'}
 #: Names of number types, for messages.
 KINDS = {float: 'number', int: 'whole number'}
 
@@ -65,12 +69,15 @@ class CommandParser(argparse.ArgumentParser):
         super().__init__(**settings)  # type: ignore[arg-type]
         # argparse takes -1e-3, which Python itself prints, for an option.
         self._negative_number_matcher = re.compile(r'^-(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?$|^-inf$')
-        self._points: list[str] = []
+        self._points: dict[str, argparse.Action] = {}
 
     def add_point(self, option: str, *, required: bool = False, text: str) -> None:
-        """Add an option that takes a point X Y [m]; ``text`` describes it in ``--help``."""
-        self._points.append(option)
-        self.add_argument(
+        """
+        Add an option that takes a point X Y [m]; ``text`` describes it in ``--help``.
+
+        Where the command is given ``--footprint``, the option takes a pose X Y YAW [m, m, rad].
+        """
+        self._points[option] = self.add_argument(
             option, type=number, nargs=2, metavar=('X', 'Y'), required=required, help=text
         )
 
@@ -80,34 +87,40 @@ class CommandParser(argparse.ArgumentParser):
         """
         Parse the arguments, after a check that each option for a point is followed by two numbers.
 
-        The check comes first because its message has an example, which that of argparse has not.
+        With ``--footprint`` they are three. The check comes first because its message has an
+        example, which that of argparse has not.
         """
         words = sys.argv[1:] if args is None else list(args)
+        names = POSE if any(word.partition('=')[0] == FOOTPRINT for word in words) else POINT
+        for action in self._points.values():
+            action.nargs, action.metavar = len(names), names
         for place, word in enumerate(words, start=1):
             option, equals, first = word.partition('=')
             if option in self._points:
-                self._check_point(option, [*([first] if equals else []), *words[place:]])
+                given = [*([first] if equals else []), *words[place:]]
+                self._check_point(option, given, names)
         return super().parse_known_args(words, namespace)
 
-    def _check_point(self, option: str, words: Sequence[str]) -> None:
+    def _check_point(self, option: str, words: Sequence[str], names: tuple[str, ...]) -> None:
         """
-        Report an error where other than two separate numbers follow an option for a point.
+        Report an error where other than a number for each of ``names`` follows an option.
 
-        ``words`` are the words after the option. Nothing is done where the first of them holds no
-        number: argparse reports that.
+        ``words`` are the words after the option, which is one for a point. Nothing is done where
+        the first of them holds no number: argparse reports that.
         """
         given = list(takewhile(_numbers_in, words))
         if not given:
             return  # argparse names the word that is no number
-        count = len(given)
+        count, wanted = len(given), len(names)
         follower = words[count] if count < len(words) else '--'
         numbers = [number for word in given for number in _numbers_in(word)]
-        too_few = count == 1 and follower.startswith('--')
-        if numbers != given or count > 2 or too_few:
-            example = ' '.join((*numbers, '0.5')[:2])
+        too_few = count < wanted and follower.startswith('--')
+        if numbers != given or count > wanted or too_few:
+            example = ' '.join((*numbers, '0.5', '0.5')[:wanted])
+            *first, last = names
             self.error(
-                f'argument {option}: takes two numbers, X and Y, such as {option} {example}; '
-                f'not {" ".join(given)}'
+                f'argument {option}: takes {NUMBER_WORDS[wanted]} numbers, {", ".join(first)} and '
+                f'{last}, such as {option} {example}; not {" ".join(given)}'
             )
 
     def error(self, message: str) -> NoReturn:

@@ -20,6 +20,7 @@ from hnr_planner.core.checks import check_count, check_points, check_seed, Float
 from hnr_planner.core.errors import RequestError, StuckError
 from hnr_planner.core.kernels.borrowed import borrowed
 from hnr_planner.core.kernels.kernel import kernel
+from hnr_planner.core.kernels.modes import in_this_mode
 from hnr_planner.core.kernels.streams import Stream, stream
 from hnr_planner.core.sampling.steps import (
     MOVES,
@@ -279,10 +280,10 @@ def walk_on(
         run_chain(space, compiled, after.chain(k), thin, draws[k])
 
     if len(draws) == 1:
-        run(0)  # in this thread, and so in the mode that it has chosen for its kernels
+        run(0)  # in this thread, which may be one that interrupts kernels
     else:
         with ThreadPoolExecutor() as pool:
-            list(pool.map(run, range(len(draws))))
+            list(pool.map(in_this_mode(run), range(len(draws))))
     return space.from_kernel(draws), after
 
 

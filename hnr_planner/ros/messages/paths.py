@@ -5,6 +5,7 @@ import struct
 
 from geometry_msgs.msg import PoseStamped
 from hnr_planner.ros.messages.cdr import with_elements
+from hnr_planner.server.pose_motions import poses_of
 from hnr_planner.server.received_maps import as_written
 from hnr_planner.server.requests import PlanRequest, Pose
 from nav_msgs.msg import Path
@@ -45,10 +46,13 @@ def pose_from_message(message: PoseStamped) -> Pose:
     )
 
 
-def points_from_path(message: Path) -> NDArray[np.float64]:
-    """Return the positions x, y (n, 2) [m] of the poses in ``message``, in the frame they have."""
-    positions = [stamped.pose.position for stamped in message.poses]
-    return np.array([(position.x, position.y) for position in positions]).reshape(-1, 2)
+def poses_from_path(message: Path) -> NDArray[np.float64]:
+    """Return the poses x, y, yaw (n, 3) [m, m, rad] in ``message``, in the frame they have."""
+    rows = [
+        (position.x, position.y, position.z, turn.x, turn.y, turn.z, turn.w)
+        for position, turn in ((p.pose.position, p.pose.orientation) for p in message.poses)
+    ]
+    return poses_of(np.array(rows).reshape(-1, 7))
 
 
 def path_message(rows: NDArray[np.float64], header: Header) -> Path:

@@ -28,7 +28,7 @@ from hnr_planner.core.planning.roadmap.sampled import SampledRoadmap
 from hnr_planner.core.systems import Car, DoubleIntegrator
 from hnr_planner.core.trajectories.plan_trajectory import plan_trajectory
 from hnr_planner.core.trajectories.registry import KINODYNAMIC_PLANNERS
-from hnr_planner.core.warming import draw_samples, find_motions, find_paths
+from hnr_planner.core.warming import draw_samples, find_motions, find_paths, find_poses
 import numpy as np
 import pytest
 
@@ -210,6 +210,7 @@ WORKLOADS: dict[str, Callable[[], None]] = {
     for work in (
         find_paths,
         find_motions,
+        find_poses,
         draw_samples,
         plan_paths,
         plan_by_roadmap,

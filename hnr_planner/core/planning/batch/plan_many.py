@@ -15,6 +15,7 @@ from hnr_planner.core.cancellation import Event
 from hnr_planner.core.checks import check_count, check_number, check_points, Floats
 from hnr_planner.core.errors import RequestError
 from hnr_planner.core.kernels.clock import working_time
+from hnr_planner.core.kernels.modes import in_this_mode
 from hnr_planner.core.planning.batch.requests import (
     DONE,
     FEW_NODES,
@@ -36,7 +37,6 @@ from hnr_planner.core.planning.planner import make_problem, Problem, with_capaci
 from hnr_planner.core.planning.planners.cones import (
     empty_frontier,
     Frontier,
-    rows_at_once,
     with_more_rows,
 )
 from hnr_planner.core.planning.planners.polyanya import INITIAL_CAPACITY
@@ -218,10 +218,10 @@ def _work(
 
     n_threads = min(n_threads, len(rows))
     if n_threads == 1:
-        run()  # in this thread, and so in the mode that it has chosen for its kernels
+        run()
         return results, stops
     with ThreadPoolExecutor(n_threads) as pool:
-        for done in [pool.submit(run) for _ in range(n_threads)]:
+        for done in [pool.submit(in_this_mode(run)) for _ in range(n_threads)]:
             done.result()
     return results, stops
 
@@ -251,8 +251,7 @@ class _Worker:
     def _go_on(self, ends: Floats, progress: Progress) -> int:
         slabs, most = self.space.slabs, self.budget.max_iterations
         if self._frontier is None:
-            sizes = len(slabs.portals), len(slabs.boxes), rows_at_once(slabs)
-            self._frontier = empty_frontier(*sizes, INITIAL_CAPACITY)
+            self._frontier = empty_frontier(slabs, INITIAL_CAPACITY)
         return go_on(self.problem, slabs, ends, most, self._frontier, progress, CONES_AT_ONCE)
 
 

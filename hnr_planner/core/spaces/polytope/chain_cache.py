@@ -10,7 +10,7 @@ less than ``doubt`` from a plane is checked from the point itself: every point o
 """
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from hnr_planner.core.checks import Floats
 from hnr_planner.core.kernels.kernel import inlined, kernel
@@ -66,8 +66,7 @@ class PolytopeCache(NamedTuple):
 
 
 @memory_size.register(PolytopeData)
-@kernel
-def _memory_size(polytope, dim):
+def _memory_size(polytope: Any, dim: int) -> int:
     """Return the number of floats that store a point, slacks, rates and ratios."""
     return dim + 3 * len(polytope.offsets)
 

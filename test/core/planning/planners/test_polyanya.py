@@ -27,6 +27,15 @@ def random_map(rng: np.random.Generator) -> np.ndarray:
     return rng.random(rng.integers(2, 10, size=2)) < rng.choice([0.15, 0.3, 0.45])
 
 
+def random_blocks(rng: np.random.Generator) -> np.ndarray:
+    """Return a map of rectangles, whose straight walls paths graze from both sides."""
+    blocked = np.zeros(rng.integers(8, 20, size=2), dtype=bool)
+    for _ in range(rng.integers(3, 9)):
+        (row, column), (height, width) = rng.integers(blocked.shape), rng.integers(1, 8, size=2)
+        blocked[row:, column:][:height, :width] = True
+    return blocked
+
+
 def random_points(rng, blocked, n):
     """Return points in quarters of a cell, on grid lines too."""
     rows, columns = blocked.shape
@@ -40,7 +49,7 @@ def random_points(rng, blocked, n):
 @pytest.mark.parametrize('seed', SEEDS)
 def test_no_path_is_shorter(seed: int):
     rng = np.random.default_rng(seed)
-    blocked = random_map(rng)
+    blocked = random_map(rng) if seed % 2 else random_blocks(rng)
     space = GridSpace.from_blocked(blocked)
     for a, b in zip(random_points(rng, blocked, 12), random_points(rng, blocked, 12), strict=True):
         start, goal = (tuple(x / SCALE for x in point) for point in (a, b))
@@ -50,6 +59,16 @@ def test_no_path_is_shorter(seed: int):
         assert result.length == pytest.approx(expected, abs=MARGINS), (blocked, start, goal)
         if result.status is PlannerStatus.SOLVED:
             assert path_collisions(result.path, blocked, 1.0) == []
+
+
+def test_a_path_along_one_line_keeps_clear_of_walls_on_both_sides_of_it():
+    """It bends at (5, 10) and (5, 1): a wall between them begins on one side, on the other one."""
+    blocked = np.zeros((12, 9), dtype=bool)
+    blocked[3:10, 5:], blocked[1, :5] = True, True
+    result = exact(GridSpace.from_blocked(blocked), (7.5, 10.5), (2.5, 0.5))
+    expected = shortest_length(blocked, (30, 42), (10, 2))
+    assert result.length == pytest.approx(expected, abs=MARGINS)
+    assert path_collisions(result.path, blocked, 1.0) == []
 
 
 @pytest.mark.skipif(not SCENARIO.exists(), reason=f'HNR_MAPS has no {SCENARIO.name}')

@@ -10,7 +10,7 @@ from typing import NamedTuple
 from hnr_planner.core.checks import Floats
 from hnr_planner.core.kernels.borrowed import borrowed
 from hnr_planner.core.kernels.kernel import inlined, kernel
-from hnr_planner.core.planning.planners.cones import N_OPEN
+from hnr_planner.core.planning.planners.heap import N_OPEN
 from hnr_planner.core.planning.roadmap.grid.corners import state_along, X, Y
 from hnr_planner.core.planning.roadmap.grid.edges import fit
 from hnr_planner.core.planning.roadmap.grid.labels import (
