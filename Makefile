@@ -29,6 +29,7 @@ help:
 	@echo 'make demo KEEP=1           leave the nodes running, to try calls by hand'
 	@echo 'make test                  run the tests (ARGS="-k name -x" goes to pytest)'
 	@echo 'make compiled              those tests as machine code that else run interpreted'
+	@echo 'make digests               whether interpreted kernels and machine code agree to the bit'
 	@echo 'make soak                  the nodes under load and faults, for a quarter of an hour'
 	@echo 'make check                 format, lint, types, spelling, the site, then the tests'
 	@echo 'make bench                 side by side with OMPL, grid search and hopsy, half an hour'
@@ -96,6 +97,11 @@ test: $(TEST)
 .PHONY: compiled
 compiled: $(TEST)
 	HNR_COMPILE_ALL=1 $(VENV) -m pytest -m interpreted $(PARALLEL) $(ARGS)
+
+# BEFORE=FILE compares with the digests that another version wrote.
+.PHONY: digests
+digests: $(TEST)
+	$(VENV) -m test.digests $(if $(BEFORE),--before '$(BEFORE)') $(ARGS)
 
 .PHONY: soak
 soak: $(TEST)

@@ -24,6 +24,7 @@ from benchmarks.kept_routes import kept_routes
 from benchmarks.kinodynamic import kinodynamic
 from benchmarks.picture import draw
 from benchmarks.pinned import on_one_core
+from benchmarks.poses import poses
 from benchmarks.problems import missing_maps, Problem, problems
 from benchmarks.progress import say
 from benchmarks.properties import properties
@@ -52,6 +53,7 @@ SECTIONS: tuple[SectionOf, ...] = (
     clearance,
     kinodynamic,
     kept_routes,
+    poses,
     answers,
     properties,
     interpreted,

@@ -132,27 +132,33 @@ class LegPlanner:
 
         ``n_paths`` is the number of alternatives, by default that of the parameters.
         """
-        arguments = self.settings.plan_arguments
-        if n_paths is not None:
-            arguments['alternatives'] = n_paths
-        start, exit_point = request.start.point, zone_exit(request, snapshot)
         try:
             if snapshot.pose_space is not None:
                 return self._plan_poses(request, snapshot, snapshot.pose_space)
             if request.has_inertia:
                 return self._plan_trajectory(request, snapshot)
-            result = plan(
-                snapshot.space,
-                start if exit_point is None else exit_point,
-                request.goal.point,
-                algorithm=self.planner_for(request.algorithm, snapshot),
-                goal_tolerance=request.tolerance,
-                time_limit=self.limits.time_left,
-                cancel=self.limits.cancel,
-                **arguments,
-            )
+            return self._plan_path(request, snapshot, n_paths)
         except RequestError as error:
             raise Refusal(Outcome.BAD_REQUEST, str(error)) from error
+
+    def _plan_path(
+        self, request: PlanRequest, snapshot: MapSnapshot, n_paths: int | None
+    ) -> PlanResponse:
+        """Plan for a robot that is a circle and has no inertia."""
+        arguments = self.settings.plan_arguments
+        if n_paths is not None:
+            arguments['alternatives'] = n_paths
+        start, exit_point = request.start.point, zone_exit(request, snapshot)
+        result = plan(
+            snapshot.space,
+            start if exit_point is None else exit_point,
+            request.goal.point,
+            algorithm=self.planner_for(request.algorithm, snapshot),
+            goal_tolerance=request.tolerance,
+            time_limit=self.limits.time_left,
+            cancel=self.limits.cancel,
+            **arguments,
+        )
         self.times.add_planning(result)
         if exit_point is not None:
             result = led_out(result, start, exit_point)

