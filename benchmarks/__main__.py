@@ -20,6 +20,7 @@ from benchmarks.every_problem import every_problem
 from benchmarks.exact import exact
 from benchmarks.first_path import first_path
 from benchmarks.interpreted import interpreted
+from benchmarks.kept_routes import kept_routes
 from benchmarks.kinodynamic import kinodynamic
 from benchmarks.picture import draw
 from benchmarks.pinned import on_one_core
@@ -51,6 +52,7 @@ SECTIONS: tuple[SectionOf, ...] = (
     rounded_sampling,
     clearance,
     kinodynamic,
+    kept_routes,
     poses,
     answers,
     properties,
