@@ -18,10 +18,13 @@ setup(
     keywords='hit-and-run, motion planning, occupancy grid, random walk, ROS 2, RRT, sampling',
     classifiers=[
         'Development Status :: 4 - Beta',
+        'Environment :: Console',
         'Intended Audience :: Developers',
         'Intended Audience :: Science/Research',
+        'License :: OSI Approved :: Apache Software License',
         'Operating System :: POSIX :: Linux',
         'Programming Language :: Python :: 3',
+        'Programming Language :: Python :: 3 :: Only',
         'Programming Language :: Python :: 3.11',
         'Programming Language :: Python :: 3.12',
         'Programming Language :: Python :: 3.13',
@@ -60,12 +63,16 @@ setup(
         'plot': ['matplotlib>=3.6'],
         # The command `experiment`.
         'experiments': ['joblib>=1.3', 'matplotlib>=3.6', 'tqdm>=4.66'],
+        # The command `watch` and the parameter `watch_port`.
+        'watch': ['matplotlib>=3.6', 'tornado>=6.4'],
         # ROS 2 Jazzy as wheels, for machines without ROS (x86-64 Linux). Never install these
         # beside a ROS from apt.
         'ros': [
             'ros-jazzy-common-interfaces==5.3.*',
             'ros-jazzy-rclpy[fastrtps]==7.1.*',
         ],
+        # The command `experiment --dask`, and joblib's back end of that name.
+        'cluster': ['dask>=2024.1', 'distributed>=2024.1'],
         # `sample(..., n_jobs=)`.
         'joblib': ['joblib>=1.3'],
         # For those who hand draws on to it; the package itself does without.

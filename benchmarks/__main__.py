@@ -1,8 +1,9 @@
 """
-Compare with OMPL, grid search and hopsy: ``python -m benchmarks [--quick]``.
+Compare with OMPL, grid search and hopsy: ``python -m benchmarks [--quick] [--only SECTION ...]``.
 
 HNR_MAPS names a folder of further maps. The full run writes ``benchmarks/results.md`` and
-``docs/benchmark.png``; a quick one writes into ``build/benchmarks``, and its figures are rough.
+``docs/benchmark.png``; a quick one, and one of some sections only, write into
+``build/benchmarks``. The figures of a quick run are rough.
 """
 
 from __future__ import annotations
@@ -23,6 +24,7 @@ from benchmarks.interpreted import interpreted
 from benchmarks.kinodynamic import kinodynamic
 from benchmarks.picture import draw
 from benchmarks.pinned import on_one_core
+from benchmarks.poses import poses
 from benchmarks.problems import missing_maps, Problem, problems
 from benchmarks.progress import say
 from benchmarks.properties import properties
@@ -51,34 +53,42 @@ SECTIONS: tuple[SectionOf, ...] = (
     rounded_sampling,
     clearance,
     kinodynamic,
+    poses,
     answers,
     properties,
     interpreted,
     every_problem,
 )
+#: Sections on the races of all competitors; those races are not run for the others alone.
+OF_RACES = (first_path, short_path, success, exact, every_problem)
 
 
 def main() -> None:
     """Measure, print, and write the report."""
     parser = argparse.ArgumentParser(prog='python -m benchmarks', description=__doc__)
     parser.add_argument('--quick', action='store_true', help='some minutes, for a look')
-    quick = parser.parse_args().quick
+    names = [section.__name__ for section in SECTIONS]
+    parser.add_argument('--only', nargs='+', metavar='SECTION', choices=names, help=str(names))
+    asked = parser.parse_args()
+    quick, chosen = asked.quick, [s for s in SECTIONS if s.__name__ in (asked.only or names)]
     began = time.perf_counter()
     # Machine code is measured, also in the processes that sections start.
     modes.set_mode(os.environ.setdefault(modes.VARIABLE, modes.Mode.COMPILED.value))
     warm_up()
     courses = problems(quick)
+    raced = courses if any(section in OF_RACES for section in chosen) else []
     with on_one_core():
         taking_part, missing = lineup()
         missing += missing_maps()
         if missing:
             say(missing_words(missing))
-        standings = [_race(problem, taking_part, quick) for problem in courses]
+        standings = [_race(problem, taking_part, quick) for problem in raced]
     bench = Bench(quick, courses, standings, missing)
-    sections = [section(bench) for section in SECTIONS]
+    sections = [section(bench) for section in chosen]
 
-    results, picture = _places(quick)
-    draw(standings, picture)
+    results, picture = _places(is_whole=not (quick or asked.only))
+    if standings:
+        draw(standings, picture)
     seconds = time.perf_counter() - began
     beside = os.path.relpath(picture, results.parent)
     results.write_text(report(bench, sections, seconds, beside))
@@ -97,9 +107,10 @@ def _race(problem: Problem, taking_part: list[Competitor], quick: bool) -> Stand
     return standing
 
 
-def _places(quick: bool) -> tuple[Path, Path]:
+def _places(is_whole: bool) -> tuple[Path, Path]:
+    """Return the files of the report and the picture: in the repository for a whole run."""
     folder = ROOT / 'build' / 'benchmarks'
-    places = (folder, folder) if quick else (ROOT / 'benchmarks', ROOT / 'docs')
+    places = (ROOT / 'benchmarks', ROOT / 'docs') if is_whole else (folder, folder)
     for place in places:
         place.mkdir(parents=True, exist_ok=True)
     return places[0] / 'results.md', places[1] / 'benchmark.png'

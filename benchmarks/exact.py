@@ -13,6 +13,14 @@ import time
 from typing import NamedTuple, TypeVar
 
 from benchmarks.competitors.ompl_planners import NATIVE
+from benchmarks.exact_answers import (
+    answers_table,
+    answers_verdicts,
+    default_answers,
+    MAPS,
+    noisy_answers,
+)
+from benchmarks.made_maps import maze
 from benchmarks.problems import Floats, Problem
 from benchmarks.progress import show
 from benchmarks.race import Standing
@@ -35,6 +43,8 @@ OVER_RIVAL = 0.8
 #: Grid-based path planning competition of 2023, classic any-angle track: means [s] for a request
 #: on its machine, with paths of 1,002 cells in the mean.
 PUBLISHED = (('Polyanya', 1.47e-3), ('RayScan', 2.59e-3))
+#: Chambers along a side of the larger maze, 1000 cells; its requests are random.
+LARGE_MAZE, NO_ENDS = 50, np.empty((0, 2, 2))
 #: Who stands beside ours on the far requests.
 RIVAL = f'RRTConnect ({NATIVE})'
 BESIDE = ('polyanya (ours)', 'Theta* (grid)', 'wavefront (grid)', RIVAL)
@@ -56,10 +66,19 @@ class Row(NamedTuple):
 def exact(bench: Bench) -> Section:
     """Measure ``polyanya`` and ``plan_many`` on every map, and compare with the others."""
     courses = [problem for problem in bench.problems if not problem.is_spiral]
-    rows = []
+    if not bench.quick:
+        grid = maze(LARGE_MAZE)
+        courses.append(Problem('maze, large', GridSpace.from_blocked(grid.data >= 65), NO_ENDS))
+    rows, answers = [], []
+    n_requests = REQUESTS_QUICK if bench.quick else REQUESTS
     for problem in courses:
         show(f'exact: {problem.name}')
-        rows.append(_measure(problem, REQUESTS_QUICK if bench.quick else REQUESTS))
+        rows.append(_measure(problem, n_requests))
+        if problem.name in MAPS:
+            ends = _random_ends(problem.space, n_requests)
+            answers.append(default_answers(problem.name, problem.space, ends))
+    if not bench.quick:
+        answers.append(noisy_answers(_random_ends))
     body = '\n\n'.join(
         [
             table(
@@ -74,16 +93,18 @@ def exact(bench: Bench) -> Section:
                 'far requests | polyanya | Theta\\* | wavefront | RRTConnect | cells',
                 [_beside(standing) for standing in bench.standings],
             ),
+            answers_table(answers),
         ]
     )
-    return Section('The shortest path, proved', body, _verdicts(rows, bench.standings))
+    verdicts = _verdicts(rows, bench.standings) + answers_verdicts(answers)
+    return Section('The shortest path, proved', body, verdicts)
 
 
 def _measure(problem: Problem, n_requests: int) -> Row:
     space, ends = problem.space, _random_ends(problem.space, BATCH)
     free_distance = space.data.free_distance
     mesh = min(_seconds(lambda: build_slabs(free_distance))[1] for _ in range(REPEATS))
-    megabytes = sum(array.nbytes for array in space.slabs) / 1e6
+    megabytes = sum(np.asarray(array).nbytes for array in space.slabs) / 1e6
     results, times = [], []
     for start, goal in ends[:n_requests]:
         runs = [_request(space, start, goal) for _ in range(REPEATS)]
@@ -146,8 +167,8 @@ def _medians(standing: Standing) -> dict[str, float]:
 
 
 def _verdicts(rows: list[Row], standings: list[Standing]) -> list[Verdict]:
-    plain = [row for row in rows if row.name != 'maze']
-    mazes = [row for row in rows if row.name == 'maze']
+    mazes = [row for row in rows if row.name.startswith('maze')]
+    plain = [row for row in rows if not row.name.startswith('maze')]
     slow = {r.name: milliseconds(m) for r in plain if (m := float(np.median(r.requests))) > MEDIAN}
     late = {
         r.name: milliseconds(p) for r in plain if (p := float(np.quantile(r.requests, 0.95))) > P95

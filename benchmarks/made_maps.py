@@ -22,9 +22,9 @@ def warehouse() -> OccupancyMap:
     return OccupancyMap(data, RESOLUTION)
 
 
-def maze() -> OccupancyMap:
-    """Build 25 x 25 chambers of 1 m, walls of .15 m, a tree of doors and some doors more."""
-    rng, side = np.random.default_rng(0), 25
+def maze(side: int = 25) -> OccupancyMap:
+    """Build side x side chambers of 1 m, walls of .15 m, a tree of doors and some doors more."""
+    rng = np.random.default_rng(0)
     data = _walled(side + 0.15, side + 0.15)
     for at in np.arange(1.0, side):
         _fill(data, at, 0.0, 0.15, side)

@@ -40,7 +40,7 @@ TURNS, TURNS_QUICK = 5, 1
 FIXED = 1e-7
 #: Steps between two draws, for each dimension, by walk.
 FAST = CoordinateHitAndRunWalk(overrelaxed=True)
-OUR_THINS = (0.5, 1, 2)
+OUR_THINS = (0.5, 1, 2, 4)
 THEIR_THINS = {
     'UniformCoordinateHitAndRunProposal': (1, 2, 4),
     'UniformHitAndRunProposal': (4,),

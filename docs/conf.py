@@ -3,8 +3,9 @@ Configuration of the site for Sphinx: ``make docs`` builds it into ``docs/_build
 
 All sources of the site lie in ``docs/`` or are linked from there (``ros``, ``examples``,
 ``config``, ``benchmark.md``, ``changelog.rst``, ``contributing.md``). It is built from a copy of
-this folder in which the links are files, as ROS's rosdoc2 makes one too. Nothing is compiled and
-nothing is downloaded: kernels run interpreted, and other projects are linked by the inventories in
+this folder in which the links are files, as ROS's rosdoc2 makes one too; that one works in its
+copy, and finds the package there by the link ``hnr_planner``. Nothing is compiled and nothing is
+downloaded: kernels run interpreted, and other projects are linked by the inventories in
 ``inventories/``.
 """
 
@@ -16,9 +17,7 @@ import re
 import sys
 
 os.environ['HNR_PLANNER_KERNELS'] = 'interpreted'  # before the first import of the package
-# From a clone; elsewhere the package has to be installed.
-if (Path.cwd() / 'hnr_planner').is_dir():
-    sys.path.insert(0, str(Path.cwd()))
+sys.path.insert(0, str(Path.cwd()))  # a clone, or rosdoc2's copy of this folder
 
 project = 'hnr_planner'
 author = 'The hnr_planner developers'
@@ -40,8 +39,18 @@ if find_spec('sphinx_gallery'):
 
 templates_path = ['_templates']
 source_suffix = {'.md': 'markdown', '.rst': 'restructuredtext'}
-# The last three are what rosdoc2 adds.
-exclude_patterns = ['_build', 'examples', 'hnr_planner*.rst', 'modules.rst', 'setup.rst']
+exclude_patterns = [
+    '_build',
+    'examples',
+    'hnr_planner',
+    # What rosdoc2 adds, of which the site has its own.
+    '__readme_include.rst',
+    'hnr_planner.*',
+    'index.rst',
+    'modules.rst',
+    'standard_docs',
+    'standards.rst',
+]
 # The shapes in docstrings, such as (n, state_dim), look like references.
 suppress_warnings = ['ref.python']
 

@@ -1,13 +1,15 @@
 """
 What holds for every test, and what is done once before the first one.
 
-The kernels of requests on grids are compiled before the first test. Tests wait for the machine
-code of all others, too. Those marked ``interpreted`` do not: what has no machine code by then runs
-interpreted, which gives the same to the last bit, and which costs less than compiling it for a few
-calls. With ``HNR_COMPILE_ALL`` set the mark means nothing.
+The kernels of requests on grids are compiled before the first test that needs them. Tests wait for
+the machine code of all others, too. Those marked ``interpreted`` do not: what has no machine code
+by then runs interpreted, which gives the same to the last bit, and which costs less than compiling
+it for a few calls. With ``HNR_COMPILE_ALL`` set the mark means nothing.
 """
 
 import fcntl
+from functools import cache
+import gc
 import os
 import subprocess
 import sys
@@ -21,7 +23,7 @@ import pytest
 # Processes that tests start wait for machine code, unless a test says otherwise.
 MODE = os.environ.setdefault(modes.VARIABLE, 'compiled')
 MARKS_COUNT = MODE == 'compiled' and not os.environ.get('HNR_COMPILE_ALL')
-# Workers collect while all that most tests need is being compiled elsewhere.
+# Workers collect, and some begin, while all that most tests need is being compiled elsewhere.
 modes.set_mode('interpreted')
 # Set before the first message class is imported.
 # Without these checks a field of the wrong type goes out as garbage, silently.
@@ -47,8 +49,11 @@ FIRST = (
     'test/test_package.py',
     'test/ros/',
 )
-#: Folders whose tests all run in one worker, since they share kernels that nobody else needs.
+#: Folders whose tests all run in one worker, since they share kernels that nobody else needs. Nor
+#: do they need those of others, so this worker begins while the others wait for theirs.
 TOGETHER = ('test/laws/',)
+#: New objects after which Python looks for garbage: the compiler makes many, and few are garbage.
+GARBAGE_EVERY = 50_000
 WARM_UP = 'from hnr_planner.core import warm_up; warm_up()'
 
 
@@ -88,19 +93,26 @@ def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
     return Scheduler(config, log) if config.option.dist == 'loadfile' else None
 
 
-def pytest_collection_finish(session: pytest.Session) -> None:
-    """Wait until all is compiled that most tests need, and load it."""
-    is_controller = session.config.pluginmanager.hasplugin('dsession')
-    if not is_controller and not session.config.option.collectonly:
-        os.close(_lock(fcntl.LOCK_SH))
-        warm_up()
+def pytest_collection_finish() -> None:
+    """Take what has been imported and collected for no garbage, and look less often for some."""
+    gc.freeze()
+    gc.set_threshold(GARBAGE_EVERY)
 
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_runtest_setup(item: pytest.Item) -> None:
-    """Set what happens when a test calls a kernel that has no machine code."""
+    """Wait for what most tests need; set what a kernel without machine code does when called."""
+    if not item.nodeid.startswith(TOGETHER):
+        _load_machine_code()
     is_marked = item.get_closest_marker('interpreted') is not None
     modes.set_mode('interpreted' if is_marked and MARKS_COUNT else MODE)
+
+
+@cache
+def _load_machine_code() -> None:
+    """Wait, once, until all is compiled that most tests need, and load it."""
+    os.close(_lock(fcntl.LOCK_SH))
+    warm_up()
 
 
 def _lock(kind: int) -> int:

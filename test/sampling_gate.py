@@ -29,6 +29,9 @@ ALPHA = 1e-6 / 150
 N_ONE_STEP = 300_000
 """Steps from one point: with so many, T1 and T5 catch every mutant of the gate."""
 
+N_LAW = 50_000
+"""Points of T2, of T3, and of a ball walk's step: so many catch the mutants named for them."""
+
 
 def one_step(
     region: Region, step: Step, point: ArrayLike, n: int, seed: int

@@ -46,6 +46,7 @@ LAYERS = (
     'hnr_planner.page',
     'hnr_planner.ros',
     'hnr_planner.demo',
+    'hnr_planner.watch',
     'hnr_planner.cli',
     'hnr_planner.__main__',
 )
@@ -65,10 +66,12 @@ IN_ROSDEP = {
     'yaml': 'python3-yaml',
 }
 #: rosdep has a key for numba, but Ubuntu 24.04 no package; it has neither for arviz. Tests in a
-#: browser are skipped where selenium is missing.
-NOT_IN_ROSDEP = {'arviz', 'numba', 'selenium'}
+#: browser are skipped where selenium is missing, tests of a cluster where Dask is.
+NOT_IN_ROSDEP = {'arviz', 'dask', 'distributed', 'numba', 'selenium'}
 #: Imported by one function only, for those who have it.
 OPTIONAL = {'arviz', 'joblib'}
+#: What joblib's back end for Dask imports.
+OF_A_CLUSTER = {'dask', 'distributed'}
 
 
 def imports(path: Path) -> Iterator[str]:
@@ -175,14 +178,16 @@ def test_pip_requirements_are_what_a_robot_imports(distribution: Any) -> None:
     [
         ('plot', ('hnr_planner.drawing', 'hnr_planner.page', 'hnr_planner.demo')),
         ('experiments', ('hnr_planner.drawing', 'hnr_planner.experiments')),
+        ('watch', ('hnr_planner.drawing', 'hnr_planner.page', 'hnr_planner.watch')),
     ],
 )
 def test_an_extra_is_what_its_layers_import_besides(
     distribution: Any, extra: str, layers: tuple[str, ...]
 ) -> None:
-    needed = libraries_of(layers) - (libraries_of(OF_A_ROBOT) - OPTIONAL)
+    needed = libraries_of(layers) - (libraries_of(OF_A_ROBOT) - OPTIONAL) - OF_A_CLUSTER
     assert names(distribution.extras_require[extra]) == on_pypi(needed)
     assert set(EXTRAS[extra]) == needed
+    assert names(distribution.extras_require['cluster']) == set(EXTRAS['cluster']) == OF_A_CLUSTER
 
 
 def test_commands_themselves_need_no_extra() -> None:

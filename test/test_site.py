@@ -57,6 +57,7 @@ def test_links_out_of_the_folder_lead_to_what_they_are_named_for() -> None:
         'changelog.rst': 'CHANGELOG.rst',
         'contributing.md': 'CONTRIBUTING.md',
         'CITATION.cff': 'CITATION.cff',
+        'hnr_planner': 'hnr_planner',
     }.items():
         assert (ROOT / 'docs' / name).resolve() == ROOT / target
 

@@ -1,5 +1,5 @@
 """
-Arguments that several commands share, their types, and errors of one line.
+The parser of commands, arguments that several of them share, and errors of one line.
 
 Importing this module is fast: the modules of maps and planners, with NumPy, are imported only when
 a map is opened.
@@ -10,25 +10,23 @@ from __future__ import annotations
 import argparse
 from collections.abc import Callable, Iterable, Sequence
 from itertools import takewhile
-import math
 from pathlib import Path
 import re
 import sys
-from typing import Any, NoReturn, Protocol, TYPE_CHECKING, TypeVar
+from typing import Any, NoReturn, Protocol, TYPE_CHECKING
+
+from hnr_planner.cli.argument_types import length, number
 
 if TYPE_CHECKING:
     from hnr_planner.core import GridSpace
     from hnr_planner.maps import OccupancyMap
 
-Number = TypeVar('Number', int, float)
-
 #: Exit code for bad input.
 BAD_INPUT = 2
-#: File name endings of pages and of pictures.
-PAGES = ('.html', '.htm')
-PICTURES = ('.png', '.svg', '.pdf')
-#: Names of number types, for messages.
-KINDS = {float: 'number', int: 'whole number'}
+#: The option with which points are poses, and the numbers of a point and of a pose.
+FOOTPRINT, POINT, POSE = '--footprint', ('X', 'Y'), ('X', 'Y', 'YAW')
+#: Numbers in words.
+NUMBER_WORDS = {2: 'two', 3: 'three'}
 
 
 class Listed(Protocol):
@@ -65,12 +63,15 @@ class CommandParser(argparse.ArgumentParser):
         super().__init__(**settings)  # type: ignore[arg-type]
         # argparse takes -1e-3, which Python itself prints, for an option.
         self._negative_number_matcher = re.compile(r'^-(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?$|^-inf$')
-        self._points: list[str] = []
+        self._points: dict[str, argparse.Action] = {}
 
     def add_point(self, option: str, *, required: bool = False, text: str) -> None:
-        """Add an option that takes a point X Y [m]; ``text`` describes it in ``--help``."""
-        self._points.append(option)
-        self.add_argument(
+        """
+        Add an option that takes a point X Y [m]; ``text`` describes it in ``--help``.
+
+        Where the command is given ``--footprint``, the option takes a pose X Y YAW [m, m, rad].
+        """
+        self._points[option] = self.add_argument(
             option, type=number, nargs=2, metavar=('X', 'Y'), required=required, help=text
         )
 
@@ -80,34 +81,40 @@ class CommandParser(argparse.ArgumentParser):
         """
         Parse the arguments, after a check that each option for a point is followed by two numbers.
 
-        The check comes first because its message has an example, which that of argparse has not.
+        With ``--footprint`` they are three. The check comes first because its message has an
+        example, which that of argparse has not.
         """
         words = sys.argv[1:] if args is None else list(args)
+        names = POSE if any(word.partition('=')[0] == FOOTPRINT for word in words) else POINT
+        for action in self._points.values():
+            action.nargs, action.metavar = len(names), names
         for place, word in enumerate(words, start=1):
             option, equals, first = word.partition('=')
             if option in self._points:
-                self._check_point(option, [*([first] if equals else []), *words[place:]])
+                given = [*([first] if equals else []), *words[place:]]
+                self._check_point(option, given, names)
         return super().parse_known_args(words, namespace)
 
-    def _check_point(self, option: str, words: Sequence[str]) -> None:
+    def _check_point(self, option: str, words: Sequence[str], names: tuple[str, ...]) -> None:
         """
-        Report an error where other than two separate numbers follow an option for a point.
+        Report an error where other than a number for each of ``names`` follows an option.
 
-        ``words`` are the words after the option. Nothing is done where the first of them holds no
-        number: argparse reports that.
+        ``words`` are the words after the option, which is one for a point. Nothing is done where
+        the first of them holds no number: argparse reports that.
         """
         given = list(takewhile(_numbers_in, words))
         if not given:
             return  # argparse names the word that is no number
-        count = len(given)
+        count, wanted = len(given), len(names)
         follower = words[count] if count < len(words) else '--'
         numbers = [number for word in given for number in _numbers_in(word)]
-        too_few = count == 1 and follower.startswith('--')
-        if numbers != given or count > 2 or too_few:
-            example = ' '.join((*numbers, '0.5')[:2])
+        too_few = count < wanted and follower.startswith('--')
+        if numbers != given or count > wanted or too_few:
+            example = ' '.join((*numbers, '0.5', '0.5')[:wanted])
+            *first, last = names
             self.error(
-                f'argument {option}: takes two numbers, X and Y, such as {option} {example}; '
-                f'not {" ".join(given)}'
+                f'argument {option}: takes {NUMBER_WORDS[wanted]} numbers, {", ".join(first)} and '
+                f'{last}, such as {option} {example}; not {" ".join(given)}'
             )
 
     def error(self, message: str) -> NoReturn:
@@ -175,85 +182,6 @@ def listing(entries: Iterable[Listed]) -> str:
 def error_line(message: str) -> str:
     """Return an error message as one line that begins with ``error:``."""
     return 'error: ' + ' '.join(message.split())
-
-
-def bounded(
-    kind: type[Number],
-    *,
-    least: float = -math.inf,
-    above: float = -math.inf,
-    most: float = math.inf,
-) -> Callable[[str], Number]:
-    """
-    Return a function that converts text to a finite number within bounds, for argparse.
-
-    The number is of the type ``kind``, at least ``least``, greater than ``above`` and at most
-    ``most``; for any other text the function raises ArgumentTypeError.
-    """
-
-    def read(text: str) -> Number:
-        try:
-            value = kind(text)
-        except ValueError:
-            raise argparse.ArgumentTypeError(f'{text!r} is not a {KINDS[kind]}') from None
-        if not -math.inf < value < math.inf:
-            raise argparse.ArgumentTypeError(f'{text!r} is not a finite number')
-        if value < least:
-            raise argparse.ArgumentTypeError(f'{text} is less than {least}')
-        if value <= above:
-            raise argparse.ArgumentTypeError(f'{text} is not above {above}')
-        if value > most:
-            raise argparse.ArgumentTypeError(f'{text} is more than {most}')
-        return value
-
-    return read
-
-
-number = bounded(float)
-length = bounded(float, least=0)
-positive = bounded(float, above=0)
-whole = bounded(int, least=0)
-count = bounded(int, least=1, most=10**9)
-
-
-def picture(text: str) -> Path:
-    """
-    Return the path of a picture to write, for argparse.
-
-    ArgumentTypeError is raised where its folder does not exist, it is a folder itself, or its name
-    ends in none of ``PICTURES``.
-    """
-    file = output_file(text)
-    if file.suffix.lower() not in PICTURES:
-        raise argparse.ArgumentTypeError(f'{text!r} does not end in one of {", ".join(PICTURES)}')
-    return file
-
-
-def page(text: str) -> Path:
-    """
-    Return the path of an HTML page to write, for argparse.
-
-    ArgumentTypeError is raised where its folder does not exist, it is a folder itself, or its name
-    ends in none of ``PAGES``.
-    """
-    file = output_file(text)
-    if file.suffix.lower() not in PAGES:
-        raise argparse.ArgumentTypeError(f'{text!r} does not end in one of {", ".join(PAGES)}')
-    return file
-
-
-def output_file(text: str) -> Path:
-    """
-    Return the path of a file to write, for argparse.
-
-    ArgumentTypeError is raised where its folder does not exist, or it is a folder itself.
-    """
-    file = Path(text)
-    if not file.parent.is_dir():
-        raise argparse.ArgumentTypeError(f'there is no folder {str(file.parent)!r}')
-    if file.is_dir():
-        raise argparse.ArgumentTypeError(f'{text!r} is a folder')
-    return file
 
 
 def add_map_arguments(parser: argparse.ArgumentParser) -> None:

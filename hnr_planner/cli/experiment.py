@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import argparse
+from contextlib import nullcontext
 import os
 from pathlib import Path
 import sys
 import webbrowser
 
-from hnr_planner.cli.arguments import add_command, count, listing
+from hnr_planner.cli.argument_types import count
+from hnr_planner.cli.arguments import add_command, listing
 from hnr_planner.cli.extras import require_extra
 from hnr_planner.experiments.registry import EXPERIMENTS, load, NAMES
 
@@ -20,11 +22,13 @@ the experiment safety includes its map_server maps.
 examples:
   %(prog)s spiral --runs 50 --show
   %(prog)s --out figures
+  %(prog)s mixing --dask tcp://10.0.0.5:8786
 
 experiments:
 {experiments}
 
-Exit code 0: done. 2: the arguments are not usable, or the folder holds results of other sources.
+Exit code 0: done. 2: the arguments are not usable, the folder holds results of other sources, or
+a cluster cannot be reached or has other versions.
 """
 
 
@@ -57,8 +61,14 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
         metavar='DIR',
         help='the output folder, created if it does not exist; default experiments',
     )
-    parser.add_argument(
+    where = parser.add_mutually_exclusive_group()
+    where.add_argument(
         '--jobs', type=count, metavar='N', help='parallel runs; default one for each core'
+    )
+    where.add_argument(
+        '--dask',
+        metavar='ADDRESS',
+        help='run on the workers of a Dask scheduler instead, with the same rows',
     )
     parser.add_argument(
         '--fresh',
@@ -77,10 +87,15 @@ def run(arguments: argparse.Namespace) -> int:
     from hnr_planner.core.kernels import modes
 
     require_extra('experiments', 'an experiment')
+    if arguments.dask is not None:
+        require_extra('cluster', '--dask')
+    from hnr_planner.experiments.cluster import on_cluster
+
     # Interpreted, an experiment would take days: all its processes wait for machine code.
-    modes.set_mode(os.environ.setdefault(modes.VARIABLE, modes.Mode.COMPILED.value))
-    for name in arguments.names or NAMES:
-        _conduct(name, arguments)
+    modes.set_mode(os.environ.get(modes.VARIABLE) or modes.Mode.COMPILED)
+    with nullcontext() if arguments.dask is None else on_cluster(arguments.dask):
+        for name in arguments.names or NAMES:
+            _conduct(name, arguments)
     return 0
 
 

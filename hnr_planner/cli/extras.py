@@ -7,7 +7,12 @@ from importlib.util import find_spec
 from hnr_planner.cli.arguments import BadInputError
 
 #: The extras of ``setup.py`` that commands need, and the libraries in each.
-EXTRAS = {'plot': ('matplotlib',), 'experiments': ('joblib', 'matplotlib', 'tqdm')}
+EXTRAS = {
+    'plot': ('matplotlib',),
+    'experiments': ('joblib', 'matplotlib', 'tqdm'),
+    'cluster': ('dask', 'distributed'),
+    'watch': ('matplotlib', 'tornado'),
+}
 
 
 def require_extra(extra: str, what: str) -> None:

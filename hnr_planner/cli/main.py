@@ -18,7 +18,7 @@ import warnings
 
 from hnr_planner import __version__
 from hnr_planner.cli import compile as compile_command
-from hnr_planner.cli import demo, experiment, plan, sample, tour
+from hnr_planner.cli import demo, experiment, plan, sample, tour, watch
 from hnr_planner.cli.arguments import BAD_INPUT, BadInputError, CommandParser, error_line
 from hnr_planner.core.errors import HnrError
 
@@ -118,6 +118,6 @@ def build_parser() -> CommandParser:
     parser = CommandParser(prog=_program(), description=DESCRIPTION, epilog=EPILOG)
     parser.add_argument('--version', action='version', version=f'hnr_planner {__version__}')
     commands = parser.add_subparsers(title='commands', metavar='COMMAND', required=True)
-    for command in (plan, tour, sample, demo, experiment, compile_command):
+    for command in (plan, tour, sample, demo, watch, experiment, compile_command):
         command.add_parser(commands)
     return parser

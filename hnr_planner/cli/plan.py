@@ -3,29 +3,25 @@
 from __future__ import annotations
 
 import argparse
-import json
-import math
-from typing import Any, TYPE_CHECKING
+from typing import Any
 
+from hnr_planner.cli.argument_types import count, length, page, picture, positive, whole
 from hnr_planner.cli.arguments import (
     add_command,
     add_map_arguments,
-    count,
     keep_map_files,
-    length,
     listing,
     open_map,
-    page,
-    picture,
-    positive,
-    whole,
 )
 from hnr_planner.cli.extras import require_extra
+from hnr_planner.cli.footprint import (
+    add_footprint_arguments,
+    add_planning_arguments,
+    planning_options,
+    pose_space,
+)
+from hnr_planner.cli.plan_output import as_json, draw, summary
 from hnr_planner.core.planning.registry import ALGORITHMS, PLANNERS
-
-if TYPE_CHECKING:
-    from hnr_planner.core import GridSpace, PlanResult
-    from hnr_planner.maps import OccupancyMap
 
 #: Default of ``--optimize-for`` [s].
 OPTIMIZE_FOR = 0.02
@@ -34,8 +30,10 @@ NO_PATH = 1
 EPILOG = """\
 example:
   %(prog)s office.yaml --start 2 3 --goal 30 20 --robot-radius 0.22 --plot plan.png
+  %(prog)s office.yaml --start 2 3 0 --goal 30 20 1.57 --drive car --min-turning-radius 0.5 \\
+      --footprint "[[0.55, 0.3], [-0.35, 0.3], [-0.35, -0.3], [0.55, -0.3]]" --html plan.html
 
-algorithms:
+algorithms (with --footprint all but polyanya):
 {algorithms}
 
 Exit code 0: a path was found. 1: no path was found; the status names the reason: INVALID_START,
@@ -56,7 +54,8 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
     )
     add_map_arguments(parser)
     for name in ('start', 'goal'):
-        parser.add_point(f'--{name}', required=True, text=f'the {name} in the map frame [m]')
+        text = f'the {name} in the map frame [m]; with --footprint X Y YAW [m, m, rad]'
+        parser.add_point(f'--{name}', required=True, text=text)
     parser.add_argument(
         '--algorithm',
         choices=ALGORITHMS,
@@ -140,6 +139,12 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
         help='write an HTML page that shows how this search unfolds, and how every other '
         'algorithm searches for the same request',
     )
+    group = add_footprint_arguments(
+        parser,
+        'With --footprint a path is one of poses: --start and --goal take X Y YAW\n'
+        '[m, m, rad], and the whole outline is free on all of the way.',
+    )
+    add_planning_arguments(group)
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -153,13 +158,14 @@ def run(arguments: argparse.Namespace) -> int:
     for option, file in (('--plot', arguments.plot), ('--html', arguments.html)):
         if file:
             require_extra('plot', option)
-    occupancy, space = open_map(arguments)
+    occupancy, grid = open_map(arguments)
+    space = pose_space(arguments, grid) or grid
     keep_map_files(arguments.map, arguments.plot, arguments.html)
     request = _request(arguments)
     result = plan(space, **request)
-    print(_json(result) if arguments.json else _summary(space, result))
+    print(as_json(result) if arguments.json else summary(space, result))
     if arguments.plot:
-        _draw(arguments, occupancy, space, result)
+        draw(arguments, occupancy, space, result)
         if not arguments.json:
             print(f'picture     {arguments.plot}')
     if arguments.html:
@@ -186,6 +192,7 @@ def _request(arguments: argparse.Namespace) -> dict[str, Any]:
         'clearance': arguments.clearance,
         'goal_tolerance': arguments.goal_tolerance,
         'start_escape': arguments.start_escape,
+        **planning_options(arguments),
     }
 
 
@@ -198,80 +205,3 @@ def optimize_for(arguments: argparse.Namespace) -> float:
     if arguments.optimize_for is not None:
         return float(arguments.optimize_for)
     return OPTIMIZE_FOR if arguments.simplify else 0.0
-
-
-def _json(result: PlanResult) -> str:
-    """
-    Return the result as one JSON object.
-
-    The length is null where there is no path, and the lower bound where no path exists.
-    """
-    return json.dumps(
-        {
-            'status': result.status.name,
-            'message': result.message,
-            'algorithm': result.planner,
-            'seed': result.seed,
-            'iterations': result.iterations,
-            'elapsed': result.elapsed,
-            'length': result.length if math.isfinite(result.length) else None,
-            'lower_bound': result.lower_bound if math.isfinite(result.lower_bound) else None,
-            'path': result.path.tolist(),
-            'paths': [path.tolist() for path in result.paths],
-            'goal_offset': result.goal_offset,
-            'escape': result.escape,
-        }
-    )
-
-
-def _summary(space: GridSpace, result: PlanResult) -> str:
-    """Return the result as text: status, search, and length and points of every path."""
-    lines = [
-        f'{result.status.name}: {result.message}',
-        f'search      {result.planner}, {result.iterations:,} transitions, '
-        f'{len(result.samples):,} samples, {result.elapsed * 1e3:.1f} ms, seed {result.seed}',
-    ]
-    for path in result.paths:
-        length = sum(map(math.dist, path[:-1], path[1:]))
-        lines.append(
-            f'path        {length:.2f} m, {len(path)} points, '
-            f'{space.path_clearance(path):.2f} m from the nearest obstacle'
-        )
-        lines.append('            ' + ' '.join(_points(path.tolist())))
-    return '\n'.join(lines)
-
-
-def _points(path: list[list[float]], most: int = 8) -> list[str]:
-    """
-    Return the points of a path as text, one string each.
-
-    Of a path of more than ``most`` points only the first and the last ``most`` / 2 are returned,
-    with ``...`` between them.
-    """
-    words = [f'({x:.2f}, {y:.2f})' for x, y in path]
-    if len(words) <= most:
-        return words
-    half = most // 2
-    return [*words[:half], '...', *words[-half:]]
-
-
-def _draw(
-    arguments: argparse.Namespace, occupancy: OccupancyMap, space: GridSpace, result: PlanResult
-) -> None:
-    """Draw map, samples and paths into the file that ``--plot`` names."""
-    from hnr_planner import drawing
-
-    title = f'{result.planner}: {result.status.name}, {result.iterations:,} transitions'
-    if len(result.path):
-        title += f', {result.length:.1f} m'
-    shown = drawing.Plan(
-        title,
-        result.path,
-        result.samples,
-        result.parents,
-        tuple(arguments.start),
-        tuple(arguments.goal),
-        result.others,
-    )
-    figure = drawing.figure_of_plans(occupancy, [shown], blocked=space.blocked)
-    drawing.save(figure, arguments.plot)

@@ -6,18 +6,20 @@ import argparse
 from pathlib import Path
 from typing import Any
 
+from hnr_planner.cli.footprint import in_words
 from hnr_planner.core.planning.plan import plan
+from hnr_planner.core.planning.poses.search import POSE_PLANNERS
 from hnr_planner.core.planning.registry import ALGORITHMS
 from hnr_planner.core.planning.result import PlanResult
-from hnr_planner.core.spaces import GridSpace
+from hnr_planner.core.spaces import GridSpace, PoseSpace
 from hnr_planner.maps import is_moving_ai, OccupancyMap
-from hnr_planner.page import Shown, write_page
+from hnr_planner.page.write import Shown, write_page
 
 
 def write_plan_page(
     arguments: argparse.Namespace,
     occupancy: OccupancyMap,
-    space: GridSpace,
+    space: GridSpace | PoseSpace,
     request: dict[str, Any],
     result: PlanResult,
 ) -> None:
@@ -39,7 +41,8 @@ def write_plan_page(
 
     """
     asked = Shown(result, asked=True)
-    others = [name for name in ALGORITHMS if name != 'auto']
+    names = POSE_PLANNERS if isinstance(space, PoseSpace) else ALGORITHMS
+    others = [name for name in names if name != 'auto']
     searches = [
         asked
         if name == result.planner
@@ -56,14 +59,20 @@ def write_plan_page(
         searches if asked in searches else [asked, *searches],
         goal_radius=arguments.goal_radius,
         simplify=arguments.simplify,
-        options=_in_words(arguments, request, result.seed),
+        options=_in_words(arguments, space, request, result.seed),
     )
 
 
-def _in_words(arguments: argparse.Namespace, request: dict[str, Any], seed: int) -> list[str]:
+def _in_words(
+    arguments: argparse.Namespace,
+    space: GridSpace | PoseSpace,
+    request: dict[str, Any],
+    seed: int,
+) -> list[str]:
     """Return the options of the request as phrases for the page; most defaults are left out."""
+    robot = f'robot radius {arguments.robot_radius:g} m'
     words = {
-        f'robot radius {arguments.robot_radius:g} m': True,
+        in_words(space) if isinstance(space, PoseSpace) else robot: True,
         'unknown cells free': arguments.unknown == 'free',
         f'goal radius {arguments.goal_radius:g} m': arguments.goal_radius > 0.0,
         f'clearance {arguments.clearance:g} m': arguments.clearance > 0.0,

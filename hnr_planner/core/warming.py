@@ -24,10 +24,12 @@ from hnr_planner.core.planning.limits import Budget
 from hnr_planner.core.planning.plan import plan
 from hnr_planner.core.planning.planner import make_problem
 from hnr_planner.core.planning.planners.auto import flood
+from hnr_planner.core.planning.poses.search import POSE_PLANNERS
 from hnr_planner.core.planning.registry import ALGORITHMS
 from hnr_planner.core.sampling.sample import sample
 from hnr_planner.core.sampling.walks import WALKS
 from hnr_planner.core.spaces.grid.grid_space import GridSpace
+from hnr_planner.core.spaces.poses.pose_space import PoseSpace
 from hnr_planner.core.systems import DoubleIntegrator
 from hnr_planner.core.trajectories.plan_trajectory import plan_trajectory
 from hnr_planner.core.trajectories.problem import Motion
@@ -40,6 +42,10 @@ import numpy as np
 START, GOAL = (0.5, 0.5), (0.5, 4.5)
 #: Points in opposite corners of the grid with an island and of the winding one.
 CORNER, OTHER_CORNER = (0.5, 0.5), (2.5, 2.5)
+#: A robot that turns on the spot between the walls of the grid with an island.
+FOOTPRINT = ((0.2, 0.15), (-0.2, 0.15), (-0.2, -0.15), (0.2, -0.15))
+#: A twist.
+AHEAD = (0.1, 0.0, 0.0)
 #: Transitions of each search: enough to need all that a search needs.
 N_ITERATIONS = 300
 
@@ -54,8 +60,8 @@ def warm_up(*uses: str) -> None:
     Parameters
     ----------
     *uses : str
-        Kinds of requests: 'paths', 'motions' of dynamic systems, 'samples'; all three kinds when
-        none is named.
+        Kinds of requests: 'paths', 'motions' of dynamic systems, 'samples', and 'poses' of robots
+        with a footprint; all but 'poses' when none is named, as few robots need these.
 
     Raises
     ------
@@ -98,7 +104,7 @@ def compile_all(*uses: str, progress: Progress | None = None) -> int:
     Parameters
     ----------
     *uses : str
-        As for ``warm_up``.
+        Kinds of requests, as for ``warm_up``; all when none is named.
     progress : callable, optional
         Called after each kernel with the number done, their total number, and its name.
 
@@ -113,7 +119,9 @@ def compile_all(*uses: str, progress: Progress | None = None) -> int:
         When a use is none of these.
 
     """
-    needs = list(dict.fromkeys(need for use in _workloads(uses) for need in needs_of(use)))
+    needs = list(
+        dict.fromkeys(need for use in _workloads(uses or tuple(USES)) for need in needs_of(use))
+    )
     compiled = 0
     for done, need in enumerate(needs, start=1):
         kernel, signature = need.resolve()
@@ -197,6 +205,26 @@ def _reduce_motion(space: GridSpace, system: DoubleIntegrator, start: tuple[floa
     reduce(request.problem, motion, request.geometric.stream(0), Budget(math.inf))
 
 
+def find_poses() -> None:
+    """Plan for a footprint by every algorithm, as a car and turning on the spot."""
+    grid = _grid_with_island()
+    for algorithm in POSE_PLANNERS:
+        for drive, radius in (('car', 0.3), ('differential', 0.0)):
+            space = PoseSpace(grid, FOOTPRINT, drive=drive, min_turning_radius=radius)
+            result = plan(
+                space,
+                (*CORNER, 0.0),
+                (*OTHER_CORNER, 1.0),
+                algorithm=algorithm,
+                seed=0,
+                time_limit=math.inf,
+                max_iterations=N_ITERATIONS,
+            )
+    space.clearance(result.path)
+    space.is_motion_valid(result.path[0], AHEAD)
+    space.chord(result.path[0], AHEAD)
+
+
 def draw_samples() -> None:
     """Draw one sample by every walk, and compute one chord."""
     space = _small_grid()
@@ -232,13 +260,16 @@ USES = {
     'paths': Workload(__name__, 'find_paths'),
     'motions': Workload(__name__, 'find_motions'),
     'samples': Workload(__name__, 'draw_samples'),
+    'poses': Workload(__name__, 'find_poses'),
 }
+#: The uses that are meant where none is named.
+USUAL_USES = ('paths', 'motions', 'samples')
 
 
 def _workloads(uses: tuple[str, ...]) -> list[Workload]:
     """
-    Return the workloads of the named uses, or all if ``uses`` is empty.
+    Return the workloads of the named uses, or of the usual ones if ``uses`` is empty.
 
     Raise RequestError for a name that is not in ``USES``.
     """
-    return [USES[check_choice('use', use, tuple(USES))] for use in uses or USES]
+    return [USES[check_choice('use', use, tuple(USES))] for use in uses or USUAL_USES]

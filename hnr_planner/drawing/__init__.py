@@ -10,6 +10,7 @@ from hnr_planner.drawing.figures import figure_of_plans, figure_of_samples, Plan
 from hnr_planner.drawing.maps import cell_kinds, draw_map, kinds_present, known_box
 from hnr_planner.drawing.searches import (
     draw_ends,
+    draw_footprints,
     draw_path,
     draw_sample_cells,
     draw_samples,
@@ -39,6 +40,7 @@ __all__ = [
     'Plan',
     'cell_kinds',
     'draw_ends',
+    'draw_footprints',
     'draw_map',
     'draw_path',
     'draw_sample_cells',

@@ -7,7 +7,13 @@ from pathlib import Path
 from typing import NamedTuple, TYPE_CHECKING
 
 from hnr_planner.drawing.maps import cell_kinds, draw_map, kinds_present, known_box
-from hnr_planner.drawing.searches import draw_ends, draw_path, draw_samples, draw_tree
+from hnr_planner.drawing.searches import (
+    draw_ends,
+    draw_footprints,
+    draw_path,
+    draw_samples,
+    draw_tree,
+)
 from hnr_planner.drawing.style import (
     AGES,
     draw_title,
@@ -39,7 +45,7 @@ class Plan(NamedTuple):
 
     ``path`` is (m, 2), ``samples`` (k, 2) and each of ``others``, further paths, (n, 2); points
     are (x, y) in the map frame [m]. ``parents`` (k,) has the row in ``samples`` of each sample's
-    parent, -1 for a root.
+    parent, -1 for a root. ``outlines`` are footprints (n, 2) of the robot, closely along the path.
     """
 
     title: str
@@ -49,6 +55,7 @@ class Plan(NamedTuple):
     start: tuple[float, float]
     goal: tuple[float, float]
     others: Sequence[NDArray[np.float64]] = ()
+    outlines: Sequence[NDArray[np.float64]] = ()
 
 
 def figure_of_plans(
@@ -73,6 +80,8 @@ def figure_of_plans(
     figure, panels = _panels(occupancy, len(plans))
     for axes, plan in zip(panels, plans, strict=True):
         draw_map(axes, occupancy, blocked)
+        if len(plan.outlines):
+            draw_footprints(axes, plan.outlines)
         draw_tree(axes, plan.samples, plan.parents)
         draw_samples(axes, plan.samples)
         for path in plan.others[::-1]:

@@ -5,13 +5,20 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from hnr_planner.drawing.style import AGES, GOAL, PATH, START
-from matplotlib.collections import LineCollection
+from matplotlib.collections import LineCollection, PolyCollection
+from matplotlib.colors import to_rgb
 from matplotlib.patheffects import Normal, Stroke
 import numpy as np
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from matplotlib.axes import Axes
     from numpy.typing import ArrayLike, NDArray
+
+#: Most outlines of a footprint that are drawn along a path, and how strong the tint of the colour
+#: is that fills what they sweep.
+OUTLINES_MAX, SWEPT_TINT = 40, 0.16
 
 
 def draw_tree(axes: Axes, samples: ArrayLike, parents: ArrayLike) -> None:
@@ -123,6 +130,31 @@ def draw_path(axes: Axes, path: ArrayLike, *, colour: str = PATH) -> None:
         scaley=False,
         zorder=4,
     )
+
+
+def draw_footprints(axes: Axes, outlines: Sequence[ArrayLike], *, colour: str = PATH) -> None:
+    """
+    Draw what a footprint sweeps, lightly, and some of its outlines.
+
+    Parameters
+    ----------
+    axes : matplotlib.axes.Axes
+        The axes to draw on.
+    outlines : sequence of (n, 2) array_like
+        The footprint at poses that follow each other closely on a path [m]; at least one.
+    colour : str
+        Colour of the outlines; what is swept has a light tint of it.
+
+    """
+    polygons = [np.asarray(outline, dtype=float) for outline in outlines]
+    tint = tuple(1.0 - SWEPT_TINT * (1.0 - part) for part in to_rgb(colour))
+    swept = PolyCollection(polygons, facecolors=[tint], edgecolors=[tint], linewidths=0.3)
+    swept.set(zorder=1, rasterized=True)
+    axes.add_collection(swept, autolim=False)
+    shown = np.unique(np.linspace(0, len(polygons) - 1, OUTLINES_MAX).astype(int))
+    sides = PolyCollection([polygons[k] for k in shown], facecolors='none', edgecolors=[colour])
+    sides.set(zorder=4, linewidths=0.7, alpha=0.7)
+    axes.add_collection(sides, autolim=False)
 
 
 def draw_ends(axes: Axes, start: ArrayLike, goal: ArrayLike) -> None:

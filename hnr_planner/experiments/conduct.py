@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping
+from functools import cache
 from pathlib import Path
+import platform
+from typing import Any
 
 from hnr_planner.core import warm_up
+from hnr_planner.core.kernels.modes import in_this_mode
 from hnr_planner.experiments.experiment import Experiment
 from hnr_planner.experiments.figures import save, sign
-from hnr_planner.experiments.results import Results, ResultsFile
+from hnr_planner.experiments.results import made_with, Results, ResultsError, ResultsFile
 from joblib import delayed, Parallel
 from tqdm import tqdm
 
@@ -26,9 +30,9 @@ def conduct(
 
     Only rows that the CSV file does not have yet are computed.
 
-    joblib computes the rows, by default in as many processes as there are cores; a call inside
-    ``joblib.parallel_config(backend='dask')`` sends them to a cluster. The rows and their order in
-    the file do not depend on the backend.
+    joblib computes the rows, by default in as many processes as there are cores; a call within
+    ``on_cluster(address)`` sends them to a Dask cluster. The rows and their order in the file are
+    the same. All processes treat kernels without machine code as the mode of this thread says.
 
     Parameters
     ----------
@@ -47,7 +51,8 @@ def conduct(
     Raises
     ------
     ResultsError
-        When the existing rows belong to other cases, or to another version of the core.
+        When the existing rows belong to other cases, or to another version of the core, or when a
+        worker of a cluster has other versions than this process.
 
     """
     folder.mkdir(parents=True, exist_ok=True)
@@ -72,13 +77,47 @@ def _rows(
     if not missing:
         return
     warm_up()  # so that not every process compiles what grids need
+    versions, run = made_with(), in_this_mode(measured_with)
     compute = Parallel(n_jobs=n_jobs, return_as='generator')
-    computed = compute(delayed(experiment.run)(case, seed) for case, seed in missing)
+    computed = compute(
+        delayed(run)(versions, experiment.run, case, seed) for case, seed in missing
+    )
     bar = tqdm(
         computed, experiment.name, initial=done, total=done + len(missing), unit='run', smoothing=0
     )
     for (case, seed), measured in zip(missing, bar, strict=True):
         yield case, seed, measured
+
+
+def measured_with(
+    versions: Mapping[str, str],
+    run: Callable[[Any, int], Mapping[str, float]],
+    case: Any,
+    seed: int,
+) -> Mapping[str, float]:
+    """
+    Return the columns of one row, computed by a process that has to have the given versions.
+
+    Raises
+    ------
+    ResultsError
+        When this process, such as a worker on another machine, has other versions.
+
+    """
+    differing = [
+        f'{name} {here} (expected {versions[name]})'
+        for name, here in _versions_here().items()
+        if here != versions[name]
+    ]
+    if differing:
+        raise ResultsError(f'{platform.node()} would compute with {", ".join(differing)}')
+    return run(case, seed)
+
+
+@cache
+def _versions_here() -> dict[str, str]:
+    """Return the versions of this process, read once."""
+    return made_with()
 
 
 def _signature(experiment: Experiment, results: Results, made: dict[str, str]) -> str:

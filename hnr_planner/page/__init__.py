@@ -1,10 +1,7 @@
 """
-An HTML page that shows the map, how searches unfold, and their paths.
+HTML pages that show a map, how searches on it unfold, and their paths.
 
-The page is one file that needs no server and loads nothing: ``write_page`` writes the data, the
-style and the scripts into it.
+``write.write_page`` makes a page of one request, a file that needs no server and loads nothing.
+``compose.live_page`` makes the page that ``hnr_planner.watch`` serves, which shows a running node.
+Both have the same style and scripts.
 """
-
-from hnr_planner.page.write import Shown, write_page
-
-__all__ = ['Shown', 'write_page']

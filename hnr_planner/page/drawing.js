@@ -1,12 +1,15 @@
 // Draw the canvas: the map, the searches up to the time shown, and the paths.
 
 const MANY = 4000;
-const LAYERS = {samples: true, tree: true, chord: true, detours: true, path: true};
+const LAYERS = {
+  footprint: true, samples: true, tree: true, chord: true, detours: true, path: true,
+};
+const MOST_OUTLINES = 40;
 const NICE_LENGTHS = [0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000];
 
 const canvas = byId('view');
 const context = canvas.getContext('2d');
-const image = new Image();
+let image = new Image();
 let drawing = false;
 
 function redraw() {
@@ -33,6 +36,7 @@ function draw() {
 
   drawMap();
   const on = shown();
+  if (LAYERS.footprint) for (const search of on) drawSweep(search);
   for (const search of on) {
     if (LAYERS.tree) drawTree(search);
     if (LAYERS.samples) drawSamples(search);
@@ -41,12 +45,14 @@ function draw() {
   for (const search of on) {
     if (LAYERS.chord) drawChord(search);
     if (LAYERS.path) drawPath(search);
+    if (LAYERS.footprint) drawRobot(search);
   }
   drawEnds();
   drawScale();
 }
 
 function drawMap() {
+  if (!data.map) return;
   const {origin: [x, y, yaw], resolution} = data.map;
   context.save();
   context.translate(x, y);
@@ -116,18 +122,60 @@ function drawDetours(search) {
 }
 
 function drawPath(search) {
-  if (search.path.length < 2 || shortened() === 0) return;
-  const part = Math.min(1, 1.4 * shortened());
+  const part = partShown();
+  if (search.path.length < 2 || part === 0) return;
+  const colour = search.path_colour ?? search.colour;
   for (const path of search.others) {
     line(firstPart(path, part));
     stroke('#FFFFFF', 5, 1);
     context.setLineDash([9 / view.scale, 6 / view.scale]);
-    stroke(search.colour, 2.5, 1);
+    stroke(colour, 2.5, 1);
     context.setLineDash([]);
   }
   line(firstPart(search.path, part));
   stroke('#FFFFFF', 7, 1);
-  stroke(search.colour, 4, 1);
+  stroke(colour, 4, 1);
+}
+
+// The part of a path that is shown now: it is drawn from its start on. The path of a running node
+// is shown at once, whatever is still to be seen of its search.
+const partShown = () => (data.live ? 1 : Math.min(1, 1.4 * shortened()));
+
+// Add the outline of the footprint at a pose to the path of the context.
+function addOutline([x, y, yaw]) {
+  const [cos, sin] = [Math.cos(yaw), Math.sin(yaw)];
+  data.footprint.forEach(([a, b], k) => {
+    const to = k ? 'lineTo' : 'moveTo';
+    context[to](x + cos * a - sin * b, y + sin * a + cos * b);
+  });
+  context.closePath();
+}
+
+// What the footprint has swept so far, and some of its outlines.
+function drawSweep(search) {
+  if (!data.footprint.length || search.path.length < 2 || partShown() === 0) return;
+  const poses = firstPart(search.path, partShown());
+  context.beginPath();
+  poses.forEach(addOutline);
+  context.fillStyle = search.colour;
+  context.globalAlpha = 0.13;
+  context.fill('nonzero');
+  context.globalAlpha = 1;
+  const every = Math.ceil(search.path.length / MOST_OUTLINES);
+  context.beginPath();
+  poses.filter((_, k) => k % every === 0).forEach(addOutline);
+  stroke(search.colour, 1, 0.5);
+}
+
+// The robot on its way along the path.
+function drawRobot(search) {
+  if (!data.footprint.length || search.path.length < 2 || partShown() === 0) return;
+  context.beginPath();
+  addOutline(firstPart(search.path, partShown()).at(-1));
+  context.fillStyle = '#FFFFFF';
+  context.globalAlpha = 0.75;
+  context.fill();
+  stroke(search.colour, 3, 1);
 }
 
 function drawEnds() {
@@ -137,8 +185,13 @@ function drawEnds() {
     context.arc(goal[0], goal[1], radius, 0, 2 * Math.PI);
     stroke('#22262B', 1.5, 0.7);
   }
-  dot(start[0], start[1], 7, '#22262B');
-  star(goal[0], goal[1], 11);
+  if (data.footprint.length) {
+    context.beginPath();
+    [start, goal].forEach(addOutline);
+    stroke('#22262B', 1.5, 0.7);
+  }
+  if (start) dot(start[0], start[1], 7, '#22262B');
+  if (goal) star(goal[0], goal[1], 11);
 }
 
 function line(points) {
@@ -175,9 +228,9 @@ function star(x, y, pixels) {
   stroke('#FFFFFF', 2, 1);
 }
 
-// The first part of a path, by length.
+// The first part of a path, by length; in a path of poses a turn by 1 rad counts as 1 m.
 function firstPart(path, part) {
-  const steps = path.slice(1).map(([x, y], k) => Math.hypot(x - path[k][0], y - path[k][1]));
+  const steps = path.slice(1).map((p, k) => Math.hypot(...p.map((a, axis) => a - path[k][axis])));
   let left = part * steps.reduce((sum, step) => sum + step, 0);
   const points = [path[0]];
   for (let k = 0; k < steps.length && left > 0; k++) {

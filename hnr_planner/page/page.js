@@ -1,9 +1,11 @@
-// Controls of the page (buttons, layers, keys), and its start.
+// Controls of the page: buttons, layers, keys.
 
 const LAYER_NAMES = {
-  samples: 'samples', tree: 'tree', chord: 'chord', detours: 'path as found', path: 'path',
+  footprint: 'footprint', samples: 'samples', tree: 'tree', chord: 'chord',
+  detours: 'path as found', path: 'path',
 };
 const LAYER_MARKS = {
+  footprint: '<path d="M4 3H18V9H4Z" stroke-width="1.5"/>',
   samples: '<path d="M5 8h0M16 4h0" stroke-width="5"/>',
   tree: '<path d="M1 10 11 3 21 9" stroke-width="1" opacity=".6"/>',
   chord: '<path d="M0 6H22" opacity=".55"/><path d="M7 6H15" stroke-width="3.5"/>',
@@ -63,6 +65,8 @@ function addKind([name, colour]) {
   byId('kinds').append(item);
 }
 
+const wantsMotion = () => !matchMedia('(prefers-reduced-motion: reduce)').matches;
+
 const KEYS = {
   ' ': () => play(!playing),
   ArrowRight: () => step(1),
@@ -90,14 +94,9 @@ function pressKey(event) {
   act();
 }
 
-function begin() {
-  const [from, to] = [data.start, data.goal].map((p) => p.map((a) => +a.toFixed(2)).join(', '));
-  byId('from').textContent += ` (${from})`;
-  byId('to').textContent += ` (${to})`;
-  byId('options').textContent = data.options.join(', ');
-  searches.forEach(addAlgorithm);
-  Object.keys(LAYERS).forEach(addLayer);
-  data.kinds.forEach(addKind);
+function addControls() {
+  const without = data.footprint.length ? 'detours' : 'footprint';
+  Object.keys(LAYERS).filter((name) => name !== without).forEach(addLayer);
   byId('panel').open = !NARROW.matches;
   byId('play').addEventListener('click', () => play(!playing));
   byId('time').addEventListener('input', (event) => {
@@ -118,10 +117,4 @@ function begin() {
   canvas.addEventListener('dblclick', fit);
   addEventListener('keydown', pressKey);
   addEventListener('resize', () => (fitted ? fit() : redraw()));
-  fit();
-  setTime(0);
-  play(!matchMedia('(prefers-reduced-motion: reduce)').matches);
 }
-
-image.addEventListener('load', begin);
-image.src = data.map.image;

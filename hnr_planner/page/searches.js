@@ -4,24 +4,14 @@
 // logarithmic scale, so that the first samples can be followed and the last ones still come; after
 // that it shows what became of the paths.
 const SEARCHED = 0.85;
-const SECONDS = 14;
 
 const byId = (id) => document.getElementById(id);
 const data = JSON.parse(byId('data').textContent);
-const searches = data.searches.map((search) => ({
-  ...search,
-  samples: unpack(search.samples, Float32Array),
-  parents: unpack(search.parents, Int32Array),
-  chords: unpack(search.chords, Float32Array),
-  on: search.asked || data.searches.length === 1,
-}));
+let searches = [];
 
+let seconds = 14;  // that time takes from 0 to 1
 let time = 0;
 let playing = null;  // when it began, and the time it began at
-
-function unpack(text, Kind) {
-  return new Kind(Uint8Array.from(atob(text), (c) => c.charCodeAt(0)).buffer);
-}
 
 function inWords(count, thing) {
   return `${count.toLocaleString('en')} ${thing}${count === 1 ? '' : 's'}`;
@@ -63,6 +53,7 @@ function caption() {
   if (time === 1 && on.length === 1) return `The path: ${outcome(only)}.`;
   if (time === 1) return 'The thick lines are the paths.';
   if (!data.simplify) return 'A path is found, and returned as it is.';
+  if (data.footprint.length) return 'A path is found. Parts of it give way to shorter motions.';
   return 'A path is found. Points of it that see each other are joined by a straight line.';
 }
 
@@ -84,7 +75,7 @@ function play(start) {
 
 function tick(now) {
   if (!playing) return;
-  setTime(playing.from + Math.max(0, now - playing.since) / (1000 * SECONDS));
+  setTime(playing.from + Math.max(0, now - playing.since) / (1000 * seconds));
   if (time >= 1) play(false);
   else requestAnimationFrame(tick);
 }

@@ -7,6 +7,7 @@ let fitted = true;  // whether nobody has moved the view
 
 // Show the whole map in the area that the panel and the caption leave free.
 function fit() {
+  if (!data.map) return;
   const [[left, low], [right, high]] = data.map.box;
   const [width, height] = [canvas.clientWidth, canvas.clientHeight];
   const panel = byId('panel');

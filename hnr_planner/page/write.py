@@ -4,31 +4,24 @@ from __future__ import annotations
 
 import base64
 from collections.abc import Sequence
-import html
-from importlib.resources import files
-from io import BytesIO
-import json
 import math
 from pathlib import Path
-from string import Template
 from typing import Any, NamedTuple
 
 from hnr_planner.core.planning.registry import PLANNERS
 from hnr_planner.core.planning.result import PlanResult
-from hnr_planner.core.spaces import GridSpace
-from hnr_planner.drawing import cell_kinds, KINDS, kinds_present, known_box
+from hnr_planner.core.spaces import GridSpace, PoseSpace
+from hnr_planner.drawing import cell_kinds
 from hnr_planner.maps import OccupancyMap
-from matplotlib.colors import to_rgb
+from hnr_planner.page.compose import request_page
+from hnr_planner.page.map_image import map_data, map_image
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from PIL import Image
 
 #: Okabe and Ito's colours, which people with any kind of colour vision can tell apart.
 COLOURS = ('#0072B2', '#D55E00', '#009E73', '#CC79A7', '#E69F00', '#56B4E9')
 #: Most samples of a search that are shown; with more the page would be slow.
 MOST_SAMPLES = 60_000
-#: Scripts of the page, in the order in which it runs them.
-SCRIPTS = ('searches.js', 'drawing.js', 'view.js', 'page.js')
 #: Sentence about each planner, and about what else may have made the path of auto.
 ABOUT = {entry.name: f'{entry.summary[:1].upper()}{entry.summary[1:]}.' for entry in PLANNERS} | {
     'polyanya': 'The shortest path. Found by auto, the samples are those of the search before it.',
@@ -57,7 +50,7 @@ def write_page(
     file: Path,
     title: str,
     occupancy: OccupancyMap,
-    space: GridSpace,
+    space: GridSpace | PoseSpace,
     start: ArrayLike,
     goal: ArrayLike,
     searches: Sequence[Shown],
@@ -76,9 +69,9 @@ def write_page(
     title : str
         Heading of the page, such as the name of the map.
     occupancy, space
-        The map, and the robot's free space on it.
-    start, goal : (2,)
-        Start and goal of the request in the map frame [m].
+        The map, and the robot's free space on it: of points, or of the poses of a footprint.
+    start, goal : (2,) or (3,)
+        Start and goal of the request in the map frame: points [m], or poses [m, m, rad].
     searches : sequence of Shown
         At least one, at most as many as there are ``COLOURS``.
     goal_radius : float
@@ -89,13 +82,15 @@ def write_page(
         Further options of the request, as phrases.
 
     """
-    kinds = cell_kinds(occupancy, space.blocked)
+    footprint = space.footprint if isinstance(space, PoseSpace) else np.empty((0, 2))
+    blocked = space.grid.uninflated if isinstance(space, PoseSpace) else space.blocked
+    kinds = cell_kinds(occupancy, blocked)
     data = {
-        'map': _map(occupancy, kinds),
-        'kinds': [KINDS[kind] for kind in kinds_present(kinds)],
+        'map': map_data(occupancy, kinds) | {'image': _data_url(map_image(kinds))},
         'start': np.asarray(start, dtype=float).tolist(),
         'goal': np.asarray(goal, dtype=float).tolist(),
         'goal_radius': goal_radius,
+        'footprint': footprint.tolist(),
         'simplify': simplify,
         'options': list(options),
         'searches': [
@@ -103,45 +98,28 @@ def write_page(
             for shown, colour in zip(searches, COLOURS[: len(searches)], strict=True)
         ],
     }
-    folder = files(__package__)
-    page = Template((folder / 'page.html').read_text(encoding='utf-8')).substitute(
-        title=html.escape(title),
-        style=(folder / 'page.css').read_text(encoding='utf-8'),
-        script='\n'.join((folder / name).read_text(encoding='utf-8') for name in SCRIPTS),
-        # Nothing in the data may end the script element that holds it.
-        data=json.dumps(data).replace('<', '\\u003c'),
-    )
-    file.write_text(page, encoding='utf-8')
+    file.write_text(request_page(title, data), encoding='utf-8')
 
 
-def _map(occupancy: OccupancyMap, kinds: NDArray[np.uint8]) -> dict[str, Any]:
-    """
-    Return the page's data of the map.
-
-    They are a PNG image of the kinds of cells, its top row being row 0 of the map, the resolution
-    [m], the origin (x, y, yaw) [m, m, rad], and the box around the known cells [m].
-    """
-    image = Image.fromarray(kinds, mode='P')
-    colours = np.round(255 * np.array([to_rgb(colour) for _, colour in KINDS]))
-    image.putpalette(colours.astype(np.uint8).tobytes())
-    written = BytesIO()
-    image.save(written, 'PNG', optimize=True)
-    return {
-        'image': 'data:image/png;base64,' + base64.b64encode(written.getvalue()).decode(),
-        'resolution': occupancy.resolution,
-        'origin': list(occupancy.origin),
-        'box': known_box(occupancy).tolist(),
-    }
+def _data_url(image: bytes) -> str:
+    """Return a URL that holds a PNG image."""
+    return f'data:image/png;base64,{base64.b64encode(image).decode()}'
 
 
-def _search(space: GridSpace, shown: Shown, colour: str) -> dict[str, Any]:
+def _search(space: GridSpace | PoseSpace, shown: Shown, colour: str) -> dict[str, Any]:
     """Return the page's data of one search, drawn in ``colour``; lengths are in metres."""
     result = shown.result
-    found = path_as_found(result)
     samples, parents = result.samples[:MOST_SAMPLES], result.parents[:MOST_SAMPLES]
     notes = []
     if len(samples) < len(result.samples):
         notes.append(f'only the first {len(samples):,} samples are shown')
+    if isinstance(space, PoseSpace):
+        # Steps and the first path are curves, which the page does not draw.
+        chords, found = np.empty((0, 4)), np.empty((0, 2))
+        path = _poses(result, space.grid.resolution)
+    else:
+        chords = _chords(space, result.planner, samples, parents)
+        found, path = path_as_found(result), result.path
     return {
         'name': result.planner,
         'about': ABOUT.get(result.planner, ''),
@@ -152,15 +130,26 @@ def _search(space: GridSpace, shown: Shown, colour: str) -> dict[str, Any]:
         'message': result.message,
         'iterations': result.iterations,
         'elapsed': result.elapsed,
-        'samples': _packed(samples, np.float32),
+        'samples': _packed(samples[:, :2], np.float32),
         'parents': _packed(parents, np.int32),
-        'chords': _packed(_chords(space, result.planner, samples, parents), np.float32),
+        'chords': _packed(chords, np.float32),
         'found': found.tolist(),
         'found_length': result.first_solution.length if result.first_solution else None,
-        'path': result.path.tolist(),
+        'path': path.tolist(),
         'others': [path.tolist() for path in result.others],
         'length': result.length if math.isfinite(result.length) else None,
     }
+
+
+def _poses(result: PlanResult, spacing: float) -> NDArray[np.float64]:
+    """
+    Return poses (n, 3) along a path of poses, ``spacing`` [m, rad] apart; none without a path.
+
+    Their yaws change by no whole turns, so that the page can interpolate them.
+    """
+    poses = result.poses(spacing) if len(result.path) else result.path.copy()
+    poses[:, 2] = np.unwrap(poses[:, 2])
+    return poses
 
 
 def path_as_found(result: PlanResult) -> NDArray[np.float64]:

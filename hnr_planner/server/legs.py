@@ -14,14 +14,17 @@ from hnr_planner.core import (
     plan_trajectory,
     PlannerStatus,
     PlanResult,
+    PoseSpace,
     RequestError,
     TrajectoryResult,
 )
 from hnr_planner.core.planning.planner import Planner
 from hnr_planner.server.limits import RequestLimits
 from hnr_planner.server.map_store import MapSnapshot
+from hnr_planner.server.orientations import quaternion_of
 from hnr_planner.server.outcomes import Outcome, Refusal
-from hnr_planner.server.requests import PlanRequest
+from hnr_planner.server.pose_legs import plan_pose_leg
+from hnr_planner.server.requests import PlanRequest, Pose
 from hnr_planner.server.responses import PlanResponse
 from hnr_planner.server.route_keeping import keep_route
 from hnr_planner.server.settings import Settings
@@ -88,8 +91,7 @@ class LegPlanner:
                 request = replace(request, via=ends[: number - 2], goal=ends[number - 2])
                 return replace(self._joined(request, legs), why=why, n_reached=len(legs))
             legs.append(leg)
-            x, y = leg.path[-1].tolist()
-            start = replace(end, position=(x, y, 0.0))
+            start = _reached(leg, end)
         response = self._joined(request, legs)
         return replace(response, why=in_order + response.why)
 
@@ -130,25 +132,33 @@ class LegPlanner:
 
         ``n_paths`` is the number of alternatives, by default that of the parameters.
         """
+        try:
+            if snapshot.pose_space is not None:
+                return self._plan_poses(request, snapshot, snapshot.pose_space)
+            if request.has_inertia:
+                return self._plan_trajectory(request, snapshot)
+            return self._plan_path(request, snapshot, n_paths)
+        except RequestError as error:
+            raise Refusal(Outcome.BAD_REQUEST, str(error)) from error
+
+    def _plan_path(
+        self, request: PlanRequest, snapshot: MapSnapshot, n_paths: int | None
+    ) -> PlanResponse:
+        """Plan for a robot that is a circle and has no inertia."""
         arguments = self.settings.plan_arguments
         if n_paths is not None:
             arguments['alternatives'] = n_paths
         start, exit_point = request.start.point, zone_exit(request, snapshot)
-        try:
-            if request.has_inertia:
-                return self._plan_trajectory(request, snapshot)
-            result = plan(
-                snapshot.space,
-                start if exit_point is None else exit_point,
-                request.goal.point,
-                algorithm=self.planner_for(request.algorithm, snapshot),
-                goal_tolerance=request.tolerance,
-                time_limit=self.limits.time_left,
-                cancel=self.limits.cancel,
-                **arguments,
-            )
-        except RequestError as error:
-            raise Refusal(Outcome.BAD_REQUEST, str(error)) from error
+        result = plan(
+            snapshot.space,
+            start if exit_point is None else exit_point,
+            request.goal.point,
+            algorithm=self.planner_for(request.algorithm, snapshot),
+            goal_tolerance=request.tolerance,
+            time_limit=self.limits.time_left,
+            cancel=self.limits.cancel,
+            **arguments,
+        )
         self.times.add_planning(result)
         if exit_point is not None:
             result = led_out(result, start, exit_point)
@@ -165,6 +175,16 @@ class LegPlanner:
             route=route,
             snapshot=snapshot,
         )
+
+    def _plan_poses(
+        self, request: PlanRequest, snapshot: MapSnapshot, space: PoseSpace
+    ) -> PlanResponse:
+        """Plan for a robot with a footprint."""
+        result = plan_pose_leg(
+            request, snapshot, space, self.settings, self.limits, self.times.add_planning
+        )
+        outcome = Outcome[result.status.name]
+        return PlanResponse(outcome, result.message, request, result, snapshot=snapshot)
 
     def _plan_trajectory(self, request: PlanRequest, snapshot: MapSnapshot) -> PlanResponse:
         """
@@ -228,6 +248,13 @@ class LegPlanner:
         )
         self.times.add_planning(result)
         return result
+
+
+def _reached(leg: PlanResponse, end: Pose) -> Pose:
+    """Return where a solved leg to the pose ``end`` has ended: the start of the next leg."""
+    x, y, *heading = leg.path[-1].tolist()
+    reached = replace(end, position=(x, y, 0.0))
+    return replace(reached, orientation=quaternion_of(heading[0])) if heading else reached
 
 
 def _about_zones(request: PlanRequest, snapshot: MapSnapshot, result: PlanResult) -> str:

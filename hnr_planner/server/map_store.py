@@ -9,7 +9,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 import threading
 
-from hnr_planner.core import GridSpace, HnrError
+from hnr_planner.core import GridSpace, HnrError, PoseSpace, SpaceError
 from hnr_planner.maps import OccupancyMap
 from hnr_planner.server.keepout import with_zones, zones_on
 from hnr_planner.server.outcomes import Outcome, Refusal
@@ -32,6 +32,9 @@ class MapSnapshot:
         Number of this preparation in its store, from 1: a higher one is newer.
     outside_zones : GridSpace, optional
         The space of the same map without its keepout zones; None where there are none.
+    poses : PoseSpace or SpaceError, optional
+        The poses of a robot with a footprint, or why there are none: it does not fit into the map,
+        or its drive is none. None for a robot that is a circle.
 
     """
 
@@ -39,6 +42,18 @@ class MapSnapshot:
     occupancy: OccupancyMap
     number: int
     outside_zones: GridSpace | None = field(default=None, kw_only=True)
+    poses: PoseSpace | SpaceError | None = field(default=None, kw_only=True)
+
+    @property
+    def pose_space(self) -> PoseSpace | None:
+        """
+        The poses of a robot with a footprint; None for a robot that is a circle.
+
+        Raise Refusal (BAD_REQUEST) where the parameters describe no robot that fits into the map.
+        """
+        if isinstance(self.poses, SpaceError):
+            raise Refusal(Outcome.BAD_REQUEST, str(self.poses)) from self.poses
+        return self.poses
 
     def is_in_zone(self, point: tuple[float, float]) -> bool:
         """Return whether only a keepout zone blocks a point [m]."""
@@ -58,6 +73,7 @@ class MapStore:
 
     def __init__(self, settings: Settings) -> None:
         self._arguments = settings.space_arguments
+        self._pose_arguments = settings.pose_space_arguments
         self._occupancy: OccupancyMap | None = None
         self._snapshot: MapSnapshot | None = None
         self._missing = (Outcome.NO_MAP, 'no map has arrived yet')
@@ -144,9 +160,10 @@ class MapStore:
 
         """
         with self._one_at_a_time:
-            if settings.space_arguments == self._arguments:
+            arguments = settings.space_arguments, settings.pose_space_arguments
+            if arguments == (self._arguments, self._pose_arguments):
                 return None
-            self._arguments = settings.space_arguments
+            self._arguments, self._pose_arguments = arguments
             if self._occupancy is None:
                 return None
             # The space of the former settings would let the robot through where it does not fit.
@@ -194,7 +211,20 @@ class MapStore:
             data = with_zones(occupancy.data, zones, arguments['unknown'], threshold)
             space = GridSpace.from_occupancy(data, *frame, **{**arguments, 'unknown': 'blocked'})
         self._prepared += 1
-        return MapSnapshot(space, occupancy, self._prepared, outside_zones=outside)
+        return MapSnapshot(
+            space, occupancy, self._prepared, outside_zones=outside, poses=self._poses_on(space)
+        )
+
+    def _poses_on(self, space: GridSpace) -> PoseSpace | SpaceError | None:
+        """Return the poses of a robot with a footprint, or why it has none; None for a circle."""
+        if self._pose_arguments is None:
+            return None
+        try:
+            poses = PoseSpace(space, **self._pose_arguments)
+        except SpaceError as error:  # another parameter may mend it: the map is good
+            return error
+        _ = poses.disc  # prepared now, so that the first request need not
+        return poses
 
 
 def _in_words(error: Exception) -> str:

@@ -7,7 +7,7 @@ import threading
 
 from hnr_planner.server.map_store import MapSnapshot
 from hnr_planner.server.outcomes import Outcome, Refusal
-from hnr_planner.server.path_validity import first_blocked_pose
+from hnr_planner.server.recheck import first_blocked
 from hnr_planner.server.responses import PlanResponse
 from hnr_planner.server.waiting import NewestMap
 
@@ -70,7 +70,7 @@ class PathMonitor:
     def _check_on(self, newest: MapSnapshot, response: PlanResponse) -> None:
         if newest.number == self._number and self._valid:
             return
-        blocked = first_blocked_pose(response.free_path, self._frame, newest)
+        blocked = first_blocked(response, self._frame, newest)
         if self._valid == (blocked is None):
             return
         if blocked is None:

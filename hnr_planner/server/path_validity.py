@@ -4,6 +4,7 @@ import math
 from typing import NamedTuple
 
 from hnr_planner.server.map_store import MapSnapshot
+from hnr_planner.server.pose_motions import twists_between
 from hnr_planner.server.requests import Pose
 import numpy as np
 from numpy.typing import NDArray
@@ -29,7 +30,7 @@ class PathVerdict(NamedTuple):
     ----------
     blocked : list of int
         Indices, in the poses of the path, of blocked poses: those that are not free themselves,
-        or to which the segment from the pose before is not free.
+        or to which the segment or motion from the pose before is not free.
     why : str
         Why the path is not valid; empty when it is valid.
 
@@ -71,7 +72,7 @@ def first_blocked_pose(
 
 
 def judge_path(
-    points: NDArray[np.float64],
+    poses: NDArray[np.float64],
     frame: str,
     snapshot: MapSnapshot,
     robot: Pose | None,
@@ -84,8 +85,9 @@ def judge_path(
 
     Parameters
     ----------
-    points : (n, 2)
-        Positions of the poses in ``frame`` [m]; those that are not finite count as not free.
+    poses : (n, 3)
+        Poses in ``frame`` [m, m, rad]; those that are not finite count as not free. For a robot
+        without a footprint positions (n, 2) do.
     frame : str
         Frame of the path; empty for the map's.
     snapshot : MapSnapshot
@@ -98,10 +100,10 @@ def judge_path(
         judged.
 
     """
-    if len(points) == 0:
+    if len(poses) == 0:
         return PathVerdict([], 'the path has no poses')
-    frame = frame or snapshot.frame
-    blocked = blocked_poses(points, frame, snapshot)
+    frame, points = frame or snapshot.frame, poses[:, :2]
+    blocked = blocked_poses(poses, frame, snapshot)
     passed = 0 if robot is None else nearest_pose(points, robot)
     along = np.append(0.0, np.cumsum(np.hypot(*np.diff(points[passed:], axis=0).T)))
     last = passed + np.count_nonzero(~(along > lookahead)) - 1
@@ -113,37 +115,44 @@ def judge_path(
     if not blocked:
         return PathVerdict([], '')
     x, y = points[blocked[0]].tolist()
+    way = 'segment' if snapshot.pose_space is None else 'motion of the footprint'
     return PathVerdict(
         blocked,
-        f'pose {blocked[0]} of {len(points)}, at ({x:.4g}, {y:.4g}), is not free, or the segment '
+        f'pose {blocked[0]} of {len(points)}, at ({x:.4g}, {y:.4g}), is not free, or the {way} '
         'that leads to it is not',
     )
 
 
-def blocked_poses(points: NDArray[np.float64], frame: str, snapshot: MapSnapshot) -> list[int]:
+def blocked_poses(poses: NDArray[np.float64], frame: str, snapshot: MapSnapshot) -> list[int]:
     """
-    Return the indices in ``points`` of blocked poses, ascending.
+    Return the indices in ``poses`` of blocked poses, ascending.
 
-    A pose is blocked when it is not free, or the segment to it from a free pose before it is not.
+    A pose is blocked when it is not free, or the way to it from a free pose before it is not: the
+    segment, or with a footprint the motion by the twist that turns by less than half a turn.
 
     Parameters
     ----------
-    points : (n, 2)
-        Positions of the poses in ``frame`` [m]; those that are not finite count as not free.
+    poses : (n, 3)
+        Poses in ``frame`` [m, m, rad]; those that are not finite count as not free. For a robot
+        without a footprint positions (n, 2) do.
     frame : str
-        Frame of the positions; on a map with another frame all poses are blocked.
+        Frame of the poses; on a map with another frame all poses are blocked.
     snapshot : MapSnapshot
         The map to check the poses on.
 
     """
     if frame != snapshot.frame:
-        return list(range(len(points)))
-    space = snapshot.space
-    free = np.logical_and.reduce(np.isfinite(points), axis=1)
-    free[free] = space.contains(points[free])
+        return list(range(len(poses)))
+    space = snapshot.pose_space or snapshot.space
+    places = poses[:, : space.dim]
+    free = np.logical_and.reduce(np.isfinite(places), axis=1)
+    free[free] = space.contains(places[free])
+    pairs = np.flatnonzero(free[:-1] & free[1:])
+    # What leads from each pose to the next: a point, or the twist of a footprint.
+    ends = places[1:] if space.dim == 2 else twists_between(places)
     reached = free.copy()
-    for k in np.flatnonzero(free[:-1] & free[1:]).tolist():
-        reached[k + 1] = space.is_motion_valid(points[k], points[k + 1])
+    for k in pairs.tolist():
+        reached[k + 1] = space.is_motion_valid(places[k], ends[k])
     return np.flatnonzero(~reached).tolist()
 
 

@@ -56,8 +56,8 @@ class PathWishes(NamedTuple):
             why = f'layer_name must be empty, as there are no layers here, got {self.layer!r}'
         elif self.footprint:
             why = (
-                'footprint must be empty, as the robot is a circle of robot_radius here, got '
-                f'{self.footprint!r}'
+                'footprint must be empty, as the parameters footprint and robot_radius are the '
+                f'robot here, got {self.footprint!r}'
             )
         elif self.max_cost < INSCRIBED_COST:
             why = (

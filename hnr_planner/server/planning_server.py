@@ -87,8 +87,9 @@ class PlanningServer:
         return response
 
     def follow_map(self) -> None:
-        """Keep a roadmap of the newest map if the parameter ``roadmap`` is set; else none."""
-        if not self._settings().roadmap:
+        """Keep a roadmap of the newest map if ``roadmap`` is set and no footprint; else none."""
+        settings = self._settings()
+        if not settings.roadmap or settings.vertices:
             self.roadmaps.forget()
             return
         with suppress(Refusal):

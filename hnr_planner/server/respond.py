@@ -12,6 +12,7 @@ import math
 import threading
 import time
 
+from hnr_planner.core import PoseSpace
 from hnr_planner.core.kernels.kernel import interpreted_calls
 from hnr_planner.core.planning.escape import escape_point
 from hnr_planner.core.planning.tiers import remark_since, tier_since
@@ -19,8 +20,9 @@ from hnr_planner.server.legs import LastPath, LegPlanner, PlannerFor
 from hnr_planner.server.limits import RequestLimits
 from hnr_planner.server.map_store import MapSnapshot
 from hnr_planner.server.outcomes import Outcome, Refusal
-from hnr_planner.server.path_validity import first_blocked_pose
+from hnr_planner.server.pose_motions import poses_on, rows_of
 from hnr_planner.server.poses import MOST_POSES, pose_rows
+from hnr_planner.server.recheck import first_blocked
 from hnr_planner.server.requests import check_request, PlanRequest, Pose
 from hnr_planner.server.responses import PlanResponse
 from hnr_planner.server.settings import Settings
@@ -34,6 +36,9 @@ ToFrame = Callable[[Pose, str], Pose]
 
 #: Time [s] that measuring the clearance of a path gets even when the time limit has passed.
 MEASURING_TIME = 0.02
+
+#: Most poses of a path, evenly along it, at which the clearance of a footprint is measured.
+CLEARANCES_MAX = 200
 
 
 def only_same_frame(pose: Pose, frame: str) -> Pose:
@@ -157,6 +162,7 @@ class _Job:
         A path of more than ``MOST_POSES`` vertices raises Refusal (ITERATION_LIMIT).
         """
         path, spacing = response.path, self.settings.pose_spacing
+        space = snapshot.pose_space if response.has_footprint else None
         if len(path) > MOST_POSES:
             raise Refusal(
                 Outcome.ITERATION_LIMIT,
@@ -165,6 +171,10 @@ class _Job:
             )
         if spacing < 0.0:
             spacing = snapshot.occupancy.resolution
+        if space is not None:
+            poses = poses_on(*response.motions, spacing)
+            clearance = self._clearance_of_poses(poses, space)
+            return replace(response, clearance=clearance, poses=rows_of(poses))
         orientation = response.goal_orientation
         return replace(
             response,
@@ -182,6 +192,13 @@ class _Job:
         space = snapshot.space
         return self.limits.within(
             lambda: float(space.path_clearance(path)), math.nan, MEASURING_TIME
+        )
+
+    def _clearance_of_poses(self, poses: NDArray[np.float64], space: PoseSpace) -> float:
+        """Return the least clearance [m] of a footprint at poses (n, 3); NaN at a limit."""
+        rows = np.unique(np.linspace(0, len(poses) - 1, CLEARANCES_MAX).astype(int))
+        return self.limits.within(
+            lambda: float(space.clearance(poses[rows]).min()), math.nan, MEASURING_TIME
         )
 
     def _is_still_free(self, response: PlanResponse, newer: MapSnapshot) -> bool:
@@ -228,7 +245,9 @@ def _is_still_free(response: PlanResponse, newer: MapSnapshot) -> bool:
     It has to be free there, and a first segment out of a start that is not free has to lead to
     the same point as it would on ``newer``.
     """
-    if first_blocked_pose(response.free_path, response.frame, newer) is not None:
+    if response.has_footprint is (newer.poses is None):
+        return False  # the footprint was changed meanwhile
+    if first_blocked(response, response.frame, newer) is not None:
         return False
     # The way out of a blocked start must still be the shortest one.
     if response.escape == 0.0:

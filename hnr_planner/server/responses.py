@@ -13,6 +13,7 @@ from hnr_planner.server.map_store import MapSnapshot
 from hnr_planner.server.orientations import LEVEL, normalised, Quaternion
 from hnr_planner.server.outcomes import Outcome
 from hnr_planner.server.path_validity import PlanarPose
+from hnr_planner.server.pose_motions import poses_of, twists_between
 from hnr_planner.server.requests import PlanRequest
 from hnr_planner.server.settings import Settings
 from hnr_planner.server.times import Times
@@ -140,7 +141,11 @@ class PlanResponse(Response):
 
     @property
     def path(self) -> NDArray[np.float64]:
-        """Vertices (m, 2) of the path in the map's frame [m]; (0, 2) unless solved."""
+        """
+        Vertices (m, 2) of the path in the map's frame [m]; (0, 2) unless solved.
+
+        For a robot with a footprint they are poses (m, 3) [m, m, rad].
+        """
         if self.solved and self.result is not None:
             return self.result.path
         return np.empty((0, 2))
@@ -156,9 +161,32 @@ class PlanResponse(Response):
         return self.result.others if self.solved and isinstance(self.result, PlanResult) else ()
 
     @property
+    def has_footprint(self) -> bool:
+        """Whether the path is one of a robot with a footprint: it has twists between its poses."""
+        return isinstance(self.result, PlanResult) and self.result.twists is not None
+
+    @property
     def free_path(self) -> NDArray[np.float64]:
-        """Vertices (m, 2) [m] of the path from where it is free: without a start that is not."""
+        """
+        Vertices (m, 2) [m] of the path from where it is free: without a start that is not.
+
+        For a robot with a footprint they are the positions of ``poses``.
+        """
+        if self.has_footprint:
+            return self.poses[:, :2]
         return self.path[1:] if self.escape > 0.0 else self.path
+
+    @property
+    def motions(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """
+        Poses (m, 3) [m, m, rad] and the twists (m - 1, 3) between them along the path.
+
+        For a robot that is a circle they are those of ``poses``, turned along the path.
+        """
+        if isinstance(self.result, PlanResult) and self.result.twists is not None:
+            return self.result.path, self.result.twists
+        poses = poses_of(self.poses[1:] if self.escape > 0.0 else self.poses)
+        return poses, twists_between(poses)
 
     @property
     def goal_orientation(self) -> Quaternion:
@@ -170,7 +198,7 @@ class PlanResponse(Response):
         """Distance from the last vertex of the path to the goal [m]; NaN without a path."""
         if not self.solved:
             return math.nan
-        return float(math.dist(self.path[-1], self.request.goal.point))
+        return float(math.dist(self.path[-1, :2], self.request.goal.point))
 
     @property
     def algorithm(self) -> str:

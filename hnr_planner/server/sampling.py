@@ -38,6 +38,9 @@ def draw(settings: Settings, newest_map: NewestMap, cancel: threading.Event) -> 
     before, snapshot = interpreted_calls(), None
     try:
         snapshot = wait_for_map(newest_map, settings.patience, cancel)
+        if snapshot.poses is not None:
+            why = 'positions of a circle are drawn: footprint must be [], got '
+            raise Refusal(Outcome.BAD_REQUEST, f'{why}{settings.footprint!r}')
         draws = _draw(settings, snapshot, _Ending(cancel, deadline))
         why = f'{_description(settings)} by {settings.sample_walk}, seed {draws.seed}'
         response = SampleResponse(Outcome.SAMPLED, why, settings, draws, snapshot=snapshot)

@@ -12,6 +12,7 @@ from typing import Any
 
 from hnr_planner.core import ALGORITHMS, BallWalk, KINODYNAMIC_PLANNERS, WALKS
 from hnr_planner.core.systems import DoubleIntegrator
+from hnr_planner.server.robot import RobotSettings
 from hnr_planner.server.rules import Rule, setting, SettingsError
 
 #: Largest value of an integer parameter.
@@ -25,7 +26,7 @@ SERVED_ALGORITHMS = (*ALGORITHMS, *KINODYNAMIC_PLANNERS)
 
 
 @dataclass(frozen=True)
-class Settings:
+class Settings(RobotSettings):
     """
     The parameters of the planning server, frozen.
 
@@ -222,6 +223,14 @@ class Settings:
     rviz_clicks: bool = setting(
         False, 'Listen to the click tools of RViz: initialpose keeps the start, goal_pose plans.'
     )
+    watch_port: int = setting(
+        0,
+        'Port on which this machine alone can look at the node in a browser; 0: none. Read only: '
+        'set it when the node starts.',
+        lower=0,
+        upper=65535,
+        read_only=True,
+    )
     autostart: bool = setting(
         True,
         'Whether the node configures and activates itself; false: the transitions come from '
@@ -239,11 +248,12 @@ class Settings:
         Raise SettingsError where a value is not allowed.
 
         Checks are the rule of each parameter, the values between -1 and 0 of ``pose_spacing`` and
-        ``goal_speed``, what needs ``simplify``, and the form of each alias.
+        ``goal_speed``, what needs ``simplify``, the form of each alias, and the footprint.
         """
         object.__setattr__(self, 'planner_aliases', tuple(self.planner_aliases))
         for name, rule in RULES.items():
             rule.check(name, getattr(self, name))
+        super().__post_init__()
         if -1.0 < self.pose_spacing < 0.0:
             raise SettingsError(
                 f'pose_spacing must be -1 (the resolution of the map), 0 (vertices only) or '
@@ -276,6 +286,13 @@ class Settings:
     def patience(self) -> float:
         """Longest wait [s] of a request for the first map: no more than ``time_limit``."""
         return min(self.map_wait, self.time_limit)
+
+    @property
+    def robot(self) -> str:
+        """The robot in words: its radius, or its footprint and drive."""
+        if self.vertices:
+            return f'footprint with {len(self.vertices)} vertices, {self.drive} drive'
+        return f'robot radius {self.robot_radius:g} m'
 
     @property
     def space_arguments(self) -> dict[str, Any]:
@@ -328,6 +345,15 @@ class Settings:
             'clearance': self.clearance,
             'alternatives': self.alternatives,
             'start_escape': self.escape_radius,
+        }
+
+    @property
+    def pose_plan_arguments(self) -> dict[str, Any]:
+        """Arguments of ``plan`` in a ``PoseSpace`` that the parameters decide, by name."""
+        return {
+            **self._search_arguments,
+            'heading_tolerance': self.heading_tolerance,
+            'reverse_penalty': self.reverse_penalty,
         }
 
     @property

@@ -4,6 +4,7 @@ import enum
 from typing import NamedTuple
 
 from hnr_planner.core.planning.result import SearchResult
+from hnr_planner.server.pose_motions import poses_of
 from hnr_planner.server.responses import PlanResponse
 from hnr_planner.server.subsample import subsample_tree
 import numpy as np
@@ -11,6 +12,9 @@ from numpy.typing import NDArray
 
 #: Most points in one shape: more take longer to draw, and do not show more to the eye.
 MOST_POINTS = 10_000
+
+#: Most outlines of a footprint along a path.
+MOST_OUTLINES = 200
 
 
 class Kind(enum.Enum):
@@ -34,7 +38,7 @@ class Shape(NamedTuple):
     Attributes
     ----------
     name : str
-        What the shape shows: 'samples', 'tree', 'path', 'start' or 'goal'.
+        What the shape shows: 'samples', 'tree', 'path', 'footprint', 'start' or 'goal'.
     kind : Kind
         How the points are drawn.
     size : float
@@ -54,30 +58,31 @@ def search_shapes(response: PlanResponse) -> list[Shape]:
     """
     Return the shapes of samples, tree, path, start and goal of a solved request.
 
-    None after a failure. Samples, edges and path vertices are thinned to ``MOST_POINTS`` points
-    in each shape.
+    With a footprint, its outlines along the path are one more shape. None after a failure.
+    Samples, edges and path vertices are thinned to ``MOST_POINTS`` points in each shape.
     """
     if not response.solved or response.result is None or response.snapshot is None:
         return []
     cell = response.snapshot.occupancy.resolution
     request = response.request
     return [
-        *_result_shapes(response.result, cell),
+        *_result_shapes(response, response.result, cell),
+        *_footprint_shapes(response, cell),
         Shape('start', Kind.BALL, 4.0 * cell, np.array([request.start.point])),
         Shape('goal', Kind.BALL, 4.0 * cell, np.array([request.goal.point])),
     ]
 
 
-def _result_shapes(result: SearchResult, cell: float) -> list[Shape]:
+def _result_shapes(response: PlanResponse, result: SearchResult, cell: float) -> list[Shape]:
     """Return shapes of the samples, the tree edges and the path; ``cell`` [m] sets their size."""
-    samples, parents = result.samples, result.parents
+    samples, parents = result.samples[:, :2], result.parents
     dots = subsample_tree(parents, MOST_POINTS)
     # An edge has two points.
     tree = subsample_tree(parents, MOST_POINTS // 2)
     children = np.flatnonzero(tree.parents >= 0)
     nodes = samples[tree.rows]
     edges = np.stack([nodes[tree.parents[children]], nodes[children]], axis=1).reshape(-1, 2)
-    path = result.path
+    path = response.poses[:, :2] if response.has_footprint else result.path
     if len(path) > MOST_POINTS:
         path = path[np.linspace(0, len(path) - 1, MOST_POINTS).astype(int)]
     return [
@@ -85,3 +90,16 @@ def _result_shapes(result: SearchResult, cell: float) -> list[Shape]:
         Shape('tree', Kind.PAIRS, cell / 4.0, edges),
         Shape('path', Kind.LINE, cell, path),
     ]
+
+
+def _footprint_shapes(response: PlanResponse, cell: float) -> list[Shape]:
+    """Return the outlines of a footprint along the path as a shape; none for a circle."""
+    space = response.snapshot.pose_space if response.snapshot is not None else None
+    if space is None or not response.has_footprint:
+        return []
+    poses = poses_of(response.poses)
+    n_outlines = min(MOST_OUTLINES, MOST_POINTS // (2 * len(space.footprint)), len(poses))
+    rows = np.unique(np.linspace(0, len(poses) - 1, n_outlines).astype(int))
+    outlines = np.stack([space.outline(pose) for pose in poses[rows]])
+    sides = np.stack([outlines, np.roll(outlines, -1, axis=1)], axis=2)
+    return [Shape('footprint', Kind.PAIRS, cell / 4.0, sides.reshape(-1, 2))]

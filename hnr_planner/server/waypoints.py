@@ -17,13 +17,12 @@ def joined(results: Sequence[PlanResult]) -> PlanResult:
     """
     Return the results of solved legs as one result; a single one is returned as it is.
 
-    Each leg has to begin where the leg before it ended: that point is in the path once. Paths and
-    samples are concatenated in the order of the legs, and parents are renumbered to the rows of
-    the concatenated samples (-1 stays). Lengths, lower bounds, times, iterations and counts are
-    summed; the planners of all legs are named, each once. ``cut_by_time`` is true when it is for
-    any leg, the goal offset is that of the last leg, and there are no first solution and no
-    alternatives. What is not
-    named here, such as the seed, is that of the first leg.
+    Each leg has to begin where the leg before it ended: that point is in the path once. Paths,
+    twists and samples are concatenated in the order of the legs, and parents are renumbered to the
+    rows of the concatenated samples (-1 stays). Lengths, lower bounds, times, iterations and
+    counts are summed; the planners of all legs are named, each once. ``cut_by_time`` is true when
+    it is for any leg, the goal offset is that of the last leg, and there are no first solution and
+    no alternatives. What is not named here, such as the seed, is that of the first leg.
     """
     first, *others = results
     if not others:
@@ -33,6 +32,7 @@ def joined(results: Sequence[PlanResult]) -> PlanResult:
         np.where(result.parents < 0, result.parents, result.parents + offset)
         for result, offset in zip(results, offsets, strict=False)
     ]
+    twists = [result.twists for result in results if result.twists is not None]
     counts: Counter[str] = Counter()
     for result in results:
         counts.update(result.counts)
@@ -42,6 +42,7 @@ def joined(results: Sequence[PlanResult]) -> PlanResult:
         message=f'path through {len(others)} poses on the way',
         others=(),
         path=np.vstack([first.path, *(result.path[1:] for result in others)]),
+        twists=None if not twists else np.vstack(twists),
         length=sum(result.length for result in results),
         lower_bound=sum(result.lower_bound for result in results),
         samples=np.vstack([result.samples for result in results]),

@@ -26,7 +26,8 @@ from hnr_planner.cli.main import main
 sys.exit(main({arguments!r}))
 """
 PLAN = ['plan', str(OFFICE), '--start', '3', '22', '--goal', '34', '5']
-EVERYTHING = ('joblib', 'matplotlib', 'tqdm')
+EVERYTHING = ('joblib', 'matplotlib', 'tornado', 'tqdm')
+CLUSTER = ('dask', 'distributed')
 
 
 def run_without(missing: tuple[str, ...], *arguments: str) -> tuple[int, str]:
@@ -49,17 +50,27 @@ def run_without(missing: tuple[str, ...], *arguments: str) -> tuple[int, str]:
             'needs joblib, matplotlib, tqdm',
             'experiments',
         ),
+        (['watch'], 'watch needs matplotlib, tornado', 'watch'),
+        (['experiment', '--out', 'OUT', '--dask', 'tcp://x:1'], '--dask needs dask', 'cluster'),
     ],
-    ids=['plan --plot', 'plan --html', 'sample --plot', 'demo', 'experiment'],
+    ids=[
+        'plan --plot',
+        'plan --html',
+        'sample --plot',
+        'demo',
+        'experiment',
+        'watch',
+        'experiment --dask',
+    ],
 )
 def test_a_command_names_the_extra_that_it_needs(
     arguments: list[str], what: str, extra: str, tmp_path: Path
 ) -> None:
-    if arguments[0] == 'demo':
-        pytest.importorskip('rclpy', reason='the demo asks for ROS 2 first')
+    if arguments[0] in ('demo', 'watch'):
+        pytest.importorskip('rclpy', reason='it asks for ROS 2 first')
     outputs = {'PLOT': 'plan.png', 'PAGE': 'plan.html', 'OUT': 'out'}
     words = [str(tmp_path / outputs[word]) if word in outputs else word for word in arguments]
-    code, error = run_without(EVERYTHING, *words)
+    code, error = run_without(CLUSTER if extra == 'cluster' else EVERYTHING, *words)
     assert code == 2 and error.count('\n') == 1
     assert what in error and f"pip install 'hnr_planner[{extra}]'" in error
     assert list(tmp_path.iterdir()) == []

@@ -9,62 +9,38 @@ from __future__ import annotations
 import base64
 from collections.abc import Callable, Iterator
 from dataclasses import replace
-from io import BytesIO
 import json
 import math
 from pathlib import Path
 import re
-import shutil
+from test.browser import ActionChains, BrowserPage, Keys, open_browser
 from test.cli.conftest import at, OFFICE, Ran
 from typing import Any
 
 from hnr_planner.core import GridSpace, plan
+from hnr_planner.core.planning.poses.search import POSE_PLANNERS
 from hnr_planner.core.planning.registry import PLANNERS
 from hnr_planner.maps import load_map, OccupancyMap
 from hnr_planner.page.write import COLOURS, path_as_found
-from matplotlib.colors import to_rgb
 import numpy as np
-from PIL import Image
 import pytest
-
-webdriver = pytest.importorskip('selenium.webdriver', reason='needs selenium')
-from selenium.webdriver.chrome.service import Service  # noqa: E402
-from selenium.webdriver.common.action_chains import ActionChains  # noqa: E402
-from selenium.webdriver.common.by import By  # noqa: E402
-from selenium.webdriver.common.keys import Keys  # noqa: E402
-from selenium.webdriver.support.ui import WebDriverWait  # noqa: E402
 
 pytestmark = pytest.mark.usefixtures('compiled')
 
-OPTIONS = (
-    '--headless --no-sandbox --disable-gpu --disable-quic --no-first-run --window-size=1400,860 '
-    '--disable-background-networking --disable-component-update --disable-sync '
-    '--host-resolver-rules=MAP\u00a0*\u00a0~NOTFOUND'
-)
 REQUEST = ('--start', 3, 22, '--goal', 34, 5, '--robot-radius', 0.22, '--seed', 3)
 REQUEST += ('--optimize-for', 0, '--time-limit', 600)
 #: Every planner that searches, with its colour on the page.
 SHOWN = dict(
     zip((entry.name for entry in PLANNERS if entry.name != 'auto'), COLOURS, strict=False)
 )
-PATIENCE = 60.0
 PHONE = {'width': 390, 'height': 844, 'deviceScaleFactor': 2, 'mobile': True}
 
 
 @pytest.fixture(scope='module')
 def browser() -> Iterator[Any]:
     """Return a browser without network access."""
-    programs = [shutil.which(name) for name in ('chromium', 'chromedriver')]
-    if None in programs:
-        pytest.skip('needs chromium and chromedriver')
-    options = webdriver.ChromeOptions()
-    options.binary_location = programs[0]
-    for option in OPTIONS.split(' '):
-        options.add_argument(option.replace('\u00a0', ' '))
-    options.set_capability('goog:loggingPrefs', {'browser': 'ALL'})
-    driver = webdriver.Chrome(options=options, service=Service(programs[1]))
-    yield driver
-    driver.quit()
+    with open_browser() as driver:
+        yield driver
 
 
 def data_of(file: Path) -> dict[str, Any]:
@@ -89,62 +65,16 @@ def page(browser: Any, run: Callable[..., Ran], tmp_path: Path) -> Iterator[Page
     assert page.errors() == []
 
 
-class Page:
-    """A page in the browser."""
+class Page(BrowserPage):
+    """A page of a request in the browser."""
 
     def __init__(self, browser: Any, file: Path, result: dict[str, Any] | None = None) -> None:
         """Open the page."""
-        self.browser, self.file, self.result = browser, file, result
-        browser.get_log('browser')
-        browser.get(file.as_uri())
-
-    def errors(self) -> list[str]:
-        """Return the errors since the page was opened."""
-        return [line['message'] for line in self.browser.get_log('browser')]
-
-    def find(self, selector: str) -> Any:
-        return self.browser.find_element(By.CSS_SELECTOR, selector)
-
-    def text(self, selector: str) -> str:
-        return str(self.find(selector).text)
-
-    def time(self) -> int:
-        return int(self.find('#time').get_property('value'))
-
-    def press(self, *keys: str) -> None:
-        """Press keys, whatever has the focus."""
-        ActionChains(self.browser).send_keys(*keys).perform()
-
-    def wait(self, until: Callable[[], bool]) -> None:
-        WebDriverWait(self.browser, PATIENCE, 0.05).until(lambda _: until())
-
-    def pause(self) -> None:
-        button = self.find('#play')
-        if button.get_attribute('aria-label') == 'Pause':
-            button.click()
-
-    def go_to(self, key: str) -> None:
-        """Press Home or End on the slider."""
-        self.pause()
-        self.find('#time').send_keys(key)
+        super().__init__(browser, file.as_uri())
+        self.file, self.result = file, result
 
     def toggle(self, name: str) -> None:
         self.find(f'#algorithms [data-name="{name}"]').click()
-
-    def pixels(self) -> np.ndarray:
-        """Return the colours (rows, columns, 3) of the canvas, once it is drawn."""
-        url = self.browser.execute_async_script(
-            'const done = arguments[0];'
-            'requestAnimationFrame(() => requestAnimationFrame(() =>'
-            "  done(document.getElementById('view').toDataURL())));"
-        )
-        written = base64.b64decode(url.partition(',')[2])
-        return np.asarray(Image.open(BytesIO(written)).convert('RGB'), dtype=int)
-
-    def has(self, colour: str) -> bool:
-        """Return whether a colour covers more than a few pixels."""
-        wanted = np.round(255 * np.array(to_rgb(colour)))
-        return int((np.abs(self.pixels() - wanted).max(axis=2) <= 3).sum()) > 150
 
 
 def test_it_is_one_file_that_loads_nothing(page: Page) -> None:
@@ -386,6 +316,50 @@ def test_a_search_without_a_path_is_shown_too(
     page = Page(browser, file)
     page.go_to(Keys.END)
     assert 'unreachable' in page.text('#algorithms')
+    assert page.errors() == []
+
+
+def test_a_robot_with_a_footprint_moves_along_its_path(
+    browser: Any, run: Callable[..., Ran], rooms: OccupancyMap, rooms_file: Path, tmp_path: Path
+) -> None:
+    file = tmp_path / 'page.html'
+    start, goal = (*at(rooms, 8, 8), 0.4), (*at(rooms, 10, 70), 3.5)
+    robot = ('--footprint', '[[0.3, 0.2], [0.3, -0.2], [-0.2, -0.2], [-0.2, 0.2]]', '--seed', 1)
+    limits = ('--optimize-for', 0, '--time-limit', 600)
+    ran = run(
+        'plan', rooms_file, '--start', *start, '--goal', *goal, *robot, *limits, '--html', file
+    )
+    assert ran.code == 0, ran.err
+    data = data_of(file)
+    (asked,) = (search for search in data['searches'] if search['asked'])
+    assert [search['name'] for search in data['searches']] == list(POSE_PLANNERS)
+    poses = np.array(asked['path'])
+    np.testing.assert_allclose(poses[0], start)
+    turned = poses[-1] - goal
+    assert np.hypot(*turned[:2]) < 1e-9 and abs(np.sin(turned[2] / 2.0)) < 1e-9
+    # So that the page can interpolate them: no jump by a whole turn.
+    assert np.abs(np.diff(poses, axis=0)).max() <= 0.1 + 1e-9
+    page = Page(browser, file)
+    names = '[...document.querySelectorAll("#layers input")].map((box) => box.name)'
+    assert browser.execute_script(f'return {names}') == [
+        'footprint',
+        'samples',
+        'tree',
+        'chord',
+        'path',
+    ]
+    page.pause()
+    for layer in ('samples', 'tree', 'chord', 'path'):
+        page.find(f'#layers [name="{layer}"]').click()
+    seen = []
+    for time in (0.9, 0.95):
+        browser.execute_script(f'setTime({time})')
+        assert page.has(asked['colour'])  # the robot on its way
+        seen.append(page.pixels())
+    assert (seen[0] != seen[1]).any()
+    page.find('#layers [name="footprint"]').click()
+    assert not page.has(asked['colour'])
+    assert 'footprint of 0.5 x 0.4 m' in page.text('#options')
     assert page.errors() == []
 
 

@@ -81,12 +81,13 @@ def test_first_python_of_a_page_runs(page: str, begins: str, clone: Path) -> Non
 
 def test_other_python_runs_and_prints_what_the_pages_say(clone: Path) -> None:
     """Interpreted: each is of another kind of space, and takes a second at most."""
-    in_threads, on_a_cluster = blocks('python', 'parallel')
+    in_threads, on_dask, on_a_cluster = blocks('python', 'parallel')
     (wall,) = blocks('python', 'failures')
-    program = '\n'.join([in_threads, on_a_cluster, wall, blocks('python', 'sampling')[1]])
+    program = '\n'.join([in_threads, on_dask, on_a_cluster, wall, blocks('python', 'sampling')[1]])
     out = run([sys.executable, '-c', program], clone, modes.Mode.INTERPRETED)
-    threads, cluster, failure, moves = out.splitlines()
+    threads, dask, cluster, failure, moves = out.splitlines()
     assert threads == "['SOLVED', 'SOLVED', 'SOLVED']"
+    assert dask == '(3, 5, 2)'
     assert cluster.startswith('(6, 500, 4) converged')
     assert failure.startswith('UNREACHABLE ')
     assert moves.startswith('[')

@@ -8,6 +8,7 @@ from hnr_planner.core import (
     BoxSpace,
     DifferenceSpace,
     GridSpace,
+    MappedSpace,
     OracleSpace,
     PolygonSpace,
     PolytopeSpace,
@@ -70,6 +71,16 @@ def _hall_with_tables() -> DifferenceSpace:
 @njit
 def _is_in_ring(x):
     return 0.3 < np.hypot(x[0], x[1]) < 1.0
+
+
+@njit
+def _bend(x):
+    return np.array([x[0], x[1] + 0.3 * x[0] ** 2])
+
+
+@njit
+def _unbend(x):
+    return np.array([x[0], x[1] - 0.3 * x[0] ** 2])
 
 
 def _way_in_saucer(x: NDArray, u: NDArray) -> float:
@@ -172,6 +183,9 @@ SPACES: dict[str, Callable[[], object]] = {
         [[-1.0, 0.0], [0.0, -1.0], [1.0, 2.0]], [-FAR[0], -FAR[1], FAR @ (1, 2) + 0.5]
     ),
     'rooms far away': _far_rooms,
+    'mapped': lambda: MappedSpace(
+        _bend, _unbend, BoxSpace((-1.0, -0.5), (1.0, 0.5)), resolution=2e-3
+    ),
     'product': lambda: ProductSpace(
         GridSpace.from_blocked(maps.TWO_ROOMS, 0.1), BallSpace([0.0], 2)
     ),

@@ -8,8 +8,12 @@ from test.laws.test_space_laws import random_points, rounding, size, tolerance
 from typing import NamedTuple
 
 from hnr_planner.core.kernels.kernel import interpreted, kernel
-from hnr_planner.core.spaces import primitives
-from hnr_planner.core.spaces.primitives import chord_or_empty
+from hnr_planner.core.spaces.primitives import (
+    chord_or_empty,
+    first_entry,
+    first_exit,
+    touches,
+)
 import numpy as np
 import pytest
 
@@ -31,9 +35,9 @@ class Line(NamedTuple):
 def line(space, x, u, t):
     """Return all of it: one kernel is quicker to compile for each kind of space than three."""
     return Line(
-        primitives.touches(space, x),
-        primitives.first_entry(space, x, u, t),
-        primitives.first_exit(space, x, u, t, np.inf),
+        touches(space, x),
+        first_entry(space, x, u, t),
+        first_exit(space, x, u, t, np.inf),
     )
 
 
@@ -78,8 +82,8 @@ def test_the_closure_holds_the_ends_of_chords(space, rng):
 def test_nothing_is_free_before_a_line_enters_and_something_after_it(space, rng):
     verdicts = set()
     for point, direction in lines(space, rng):
-        touches, first, _ = line(space.compiled, point, direction, 0.0)
-        assert (first == 0.0) == touches
+        is_touched, first, _ = line(space.compiled, point, direction, 0.0)
+        assert (first == 0.0) == is_touched
         before = np.linspace(0.0, min(first, 3.0), ALONG)[:-1, np.newaxis]
         assert first == 0.0 or not space.contains(point + before * direction).any()
         if first < np.inf:

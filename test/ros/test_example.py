@@ -15,7 +15,7 @@ def test_the_client_gets_a_path_and_a_reason(planner: NodeProcess, tmp_path: Pat
         planner.wait_for('map received')
         done = subprocess.run(
             [sys.executable, ROOT / 'examples' / 'ask_the_node.py'],
-            env={**os.environ, 'PYTHONPATH': str(ROOT)},
+            env={**os.environ, 'PYTHONPATH': str(ROOT), 'MPLBACKEND': 'agg'},
             capture_output=True,
             text=True,
             timeout=120,

@@ -1,6 +1,7 @@
 """Messages to and from arrays, without a node."""
 
 from dataclasses import replace
+from itertools import product
 import math
 from test.ros.harness import points_in, set_field
 
@@ -14,7 +15,7 @@ from hnr_planner.ros.messages.maps import map_from_message, message_from_map
 from hnr_planner.ros.messages.markers import serialised_markers
 from hnr_planner.ros.messages.paths import path_message, serialised_path
 from hnr_planner.ros.messages.plan_responses import PlanResponses
-from hnr_planner.ros.messages.samples import LAYOUT, samples_message
+from hnr_planner.ros.messages.samples import LAYOUT, serialised_samples
 from hnr_planner.ros.messages.trajectories import serialised_trajectory
 from hnr_planner.server.map_store import MapSnapshot
 from hnr_planner.server.outcomes import Outcome
@@ -28,7 +29,7 @@ from nav_msgs.srv import GetPlan
 import numpy as np
 import pytest
 from rclpy.serialization import deserialize_message, serialize_message
-from sensor_msgs.msg import MultiDOFJointState
+from sensor_msgs.msg import MultiDOFJointState, PointCloud2
 from std_msgs.msg import Header
 from trajectory_msgs.msg import MultiDOFJointTrajectory
 from visualization_msgs.msg import Marker, MarkerArray
@@ -117,7 +118,7 @@ def response_on_a_map() -> PlanResponse:
 def test_cloud_holds_samples_and_parents_of_the_result() -> None:
     result = response_on_a_map().result
     assert result is not None and len(result.samples) > 10
-    cloud = samples_message(result, 100_000, HEADER)
+    cloud = deserialize_message(serialised_samples(result, 100_000, HEADER), PointCloud2)
     points = points_in(cloud)
     assert cloud.header == HEADER
     assert (cloud.height, cloud.width) == (1, len(result.samples))
@@ -133,7 +134,7 @@ def test_cloud_holds_samples_and_parents_of_the_result() -> None:
 def test_capped_cloud_refers_to_its_own_points() -> None:
     result = response_on_a_map().result
     assert result is not None
-    points = points_in(samples_message(result, 9, HEADER))
+    points = points_in(deserialize_message(serialised_samples(result, 9, HEADER), PointCloud2))
     assert len(points) == 9
     # By place, since vertices of RRT at a wall may coincide in single precision.
     samples = [tuple(xy) for xy in result.samples.astype(np.float32).tolist()]
@@ -146,13 +147,21 @@ def test_capped_cloud_refers_to_its_own_points() -> None:
         assert (xy, shown[parent] if parent >= 0 else None) in edges
 
 
-def test_cloud_without_a_result_is_empty_and_well_formed() -> None:
-    cloud = samples_message(None, 100, Header())
-    assert (cloud.width, len(cloud.data), cloud.point_step) == (0, 0, LAYOUT.itemsize)
-
-
 #: Names of all lengths modulo eight: what follows them in a message moves with them.
 FRAMES = ['', 'a', 'ab', 'map', 'odom', 'floor', 'world', 'robot_1/map', 'карта']
+
+
+def test_cloud_is_one_that_rclpy_would_send() -> None:
+    found = response_on_a_map().result
+    assert found is not None
+    for frame, result, limit in product(FRAMES, (None, found), (0, 1, 2, 9)):
+        header = Header(stamp=STAMP, frame_id=frame)
+        data = serialised_samples(result, limit, header)
+        cloud = deserialize_message(data, PointCloud2)
+        assert len(serialize_message(cloud)) == len(data)  # padding may differ
+        assert cloud.header == header and cloud.is_dense and not cloud.is_bigendian
+        assert cloud.point_step == LAYOUT.itemsize
+        assert cloud.width == len(points_in(cloud)) == (0 if result is None else limit)
 
 
 @pytest.mark.parametrize('frame', FRAMES)

@@ -10,10 +10,20 @@ from hnr_planner.server.orientations import (
     tilt_of,
     yaw_of,
 )
-from hnr_planner.server.poses import MOST_POSES, poses_along
+from hnr_planner.server.poses import MOST_POSES, pose_rows
 from hnr_planner.server.subsample import subsample_tree
 import numpy as np
 import pytest
+
+
+def poses_along(
+    path: np.ndarray, spacing: float, final_yaw: float
+) -> tuple[np.ndarray, list[float]]:
+    """Return the points (n, 2) and the yaw angles [rad] of the poses along a path."""
+    rows = pose_rows(path, spacing, quaternion_of(final_yaw))
+    assert (rows[:, 2] == 0.0).all()
+    return rows[:, :2], [yaw_of(tuple(row)) for row in rows[:, 3:].tolist()]
+
 
 CORNER = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 0.25]])
 
@@ -25,24 +35,25 @@ def test_poses_are_at_most_the_spacing_apart_and_keep_every_vertex() -> None:
     assert steps.max() <= 0.1 + 1e-12
     assert points[10].tolist() == [1.0, 0.0]
     assert points[-1].tolist() == [1.0, 0.25]
-    assert yaws.tolist() == [0.0] * 10 + [math.pi / 2] * 3 + [3.0]
+    assert yaws == pytest.approx([0.0] * 10 + [math.pi / 2] * 3 + [3.0])
 
 
 def test_no_spacing_keeps_the_vertices_only() -> None:
     points, yaws = poses_along(CORNER, 0.0, -1.0)
     assert np.array_equal(points, CORNER)
-    assert yaws.tolist() == [0.0, math.pi / 2, -1.0]
+    assert yaws == pytest.approx([0.0, math.pi / 2, -1.0])
 
 
 def test_segment_without_length_looks_where_the_last_one_did() -> None:
     path = np.array([[0.0, 0.0], [0.0, 0.0], [0.0, 2.0], [0.0, 2.0], [1.0, 2.0]])
-    assert poses_along(path, 0.0, 9.0).yaws.tolist() == [math.pi / 2] * 3 + [0.0, 9.0]
+    _, yaws = poses_along(path, 0.0, 2.0)
+    assert yaws == pytest.approx([math.pi / 2] * 3 + [0.0, 2.0])
 
 
 def test_path_to_where_it_starts_looks_as_the_goal_does() -> None:
     points, yaws = poses_along(np.array([[1.0, 2.0], [1.0, 2.0]]), 0.1, 0.5)
     assert points.tolist() == [[1.0, 2.0], [1.0, 2.0]]
-    assert yaws.tolist() == [0.5, 0.5]
+    assert yaws == pytest.approx([0.5, 0.5])
 
 
 def test_spacing_gives_way_when_it_would_give_too_many_poses() -> None:
@@ -52,7 +63,7 @@ def test_spacing_gives_way_when_it_would_give_too_many_poses() -> None:
 
 
 def test_no_path_has_no_poses() -> None:
-    assert len(poses_along(np.empty((0, 2)), 0.1, 0.0).points) == 0
+    assert pose_rows(np.empty((0, 2)), 0.1, quaternion_of(0.0)).shape == (0, 7)
 
 
 def random_tree(size: int, seed: int) -> np.ndarray:

@@ -66,6 +66,10 @@ def test_configuration_states_units_and_ranges() -> None:
         ('clearance', -0.1, '0..1000 m'),
         ('alternatives', 0, '1..16'),
         ('alternatives', 17, '1..16'),
+        ('drive', 'legs', 'car, differential, omnidirectional'),
+        ('min_turning_radius', -1.0, '0..1000 m'),
+        ('reverse_penalty', 0.5, '1..1000'),
+        ('heading_tolerance', 3.2, '0..3.141592654 rad'),
     ],
 )
 def test_impossible_value_is_refused_with_value_and_rule(

@@ -10,16 +10,20 @@ The environment variable ``HNR_PLANNER_KERNELS`` sets the mode of a process; wit
 ``NUMBA_DISABLE_JIT`` it is ``interpreted``.
 """
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from enum import Enum
+from functools import partial
 import logging
 import os
 import threading
-from typing import Any
+from typing import Any, ParamSpec, TypeVar
 
 from hnr_planner.core.checks import check_choice
 from numba.core import config
+
+Arguments = ParamSpec('Arguments')
+Returned = TypeVar('Returned')
 
 #: The environment variable that sets the mode.
 VARIABLE = 'HNR_PLANNER_KERNELS'
@@ -90,6 +94,29 @@ def mode_of_thread(wanted: Mode) -> Iterator[None]:
         yield
     finally:
         _of_thread.mode = before
+
+
+def in_this_mode(function: Callable[Arguments, Returned]) -> Callable[Arguments, Returned]:
+    """
+    Return ``function`` such that it runs in the present mode of this thread wherever it is called.
+
+    It is for threads, processes and clusters that take over work of this thread. ``auto`` leaves
+    the choice to them: then the function itself is returned. Otherwise it can be pickled if the
+    function can.
+    """
+    here = mode()
+    return function if here is Mode.AUTO else partial(_run, here, function)
+
+
+def _run(
+    wanted: Mode,
+    function: Callable[Arguments, Returned],
+    *arguments: Arguments.args,
+    **options: Arguments.kwargs,
+) -> Returned:
+    """Call a function in a mode, and return what it returns."""
+    with mode_of_thread(wanted):
+        return function(*arguments, **options)
 
 
 @contextmanager

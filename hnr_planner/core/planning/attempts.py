@@ -19,16 +19,18 @@ from hnr_planner.core.planning.planners.polyanya import Polyanya
 from hnr_planner.core.planning.postprocessing.clearance import increase_clearance, path_cost
 from hnr_planner.core.planning.postprocessing.simplify import shorten
 from hnr_planner.core.planning.request import Request
-from hnr_planner.core.planning.result import FirstSolution, PlannerStatus
+from hnr_planner.core.planning.result import FirstSolution, PlannerStatus, PROVED
+from hnr_planner.core.planning.shortest import (
+    in_caller_s_frame,
+    shortest_kept_clear,
+    shortest_path,
+)
 from hnr_planner.core.spaces.grid.grid_space import GridSpace
 import numpy as np
 
 SearchType = TypeVar('SearchType', bound=Search)
 Found = TypeVar('Found')
 
-#: A path at most this many times as long as the lower bound counts as the shortest; it is so up to
-#: the margins at which it passes corners.
-PROVED = 1.0 + 1e-6
 #: Least decrease of the cost of the best path, as a fraction of that cost, for which a further
 #: search counts as a gain.
 LEAST_GAIN = 1e-3
@@ -88,8 +90,9 @@ def attempt(
     ``number`` selects the random streams, and ``began`` is the time at which the call began, on
     the clock of ``working_time`` [s]. With a budget for ``optimizing`` the planner ``Auto`` also
     searches for the shortest path with Polyanya, where the space is a ``GridSpace`` and the path
-    found is longer than the straight distance. The path of any other planner is only shortened
-    and moved away from walls.
+    found is longer than the straight distance. With a clearance, it and ``Polyanya`` also search
+    for the shortest path that keeps the clearance everywhere. The path of any other planner is
+    only shortened and moved away from walls.
     """
     status, search, path = _search(request, number, budget)
     planner = getattr(search, 'made_by', request.planner.name)
@@ -98,19 +101,39 @@ def attempt(
         return Attempt(status, search, path, math.inf, None, planner, bound, work)
     first = FirstSolution(working_time() - began, path_length(path), path)
     candidates = []
-    is_auto_on_grid = isinstance(request.planner, Auto) and isinstance(request.space, GridSpace)
-    if optimizing is not None and is_auto_on_grid and first.length > PROVED * bound:
-        exact, shortest = _shortest_path(request, optimizing)
+    exact_budget = _budget_of_exact_search(request, budget, optimizing)
+    if exact_budget is not None and first.length > PROVED * bound:
+        exact, shortest = shortest_path(request, exact_budget)
         bound, work = _lower_bound(request, exact), work.plus(Work.of(exact))
         if shortest is not None:
-            kept_clear = _with_cost(request, shortest, optimizing)
-            candidates.append(
-                Attempt(status, search, *kept_clear, first, Polyanya.name, bound, work)
-            )
+            moved = _with_cost(request, shortest, exact_budget)
+            candidates.append(Attempt(status, search, *moved, first, Polyanya.name, bound, work))
+    if exact_budget is not None and request.clearance > 0.0:
+        more, clear = shortest_kept_clear(request, exact_budget)
+        work = work.plus(more)
+        if clear is not None:
+            kept = clear, _cost(request, clear, exact_budget)
+            candidates.append(Attempt(status, search, *kept, first, Polyanya.name, bound, work))
     if request.clearance > 0.0 or not candidates:
         improved = _improved(request, number, search, path, budget)
         candidates.append(Attempt(status, search, *improved, first, planner, bound, work))
     return min(candidates, key=lambda candidate: candidate.cost)
+
+
+def _budget_of_exact_search(
+    request: Request, budget: Budget, optimizing: Budget | None
+) -> Budget | None:
+    """
+    Return the budget for exact searches of a request; None where it has none.
+
+    ``Auto`` has them while it optimizes, and ``Polyanya`` where a clearance is requested.
+    """
+    if not isinstance(request.space, GridSpace):
+        return None
+    if isinstance(request.planner, Auto):
+        return optimizing
+    is_exact = isinstance(request.planner, Polyanya)
+    return budget if is_exact and request.clearance > 0.0 else None
 
 
 def _improved(
@@ -134,9 +157,15 @@ def _with_cost(request: Request, path: Floats, budget: Budget) -> tuple[Floats, 
 
     The cost is inf where a limit of the budget interrupts its computation.
     """
+    if request.clearance == 0.0:
+        return path, float(path_length(path))
     path = with_clearance(request, path, budget)
-    cost = budget.within(lambda: path_cost(request.space, path, request.clearance), math.inf)
-    return path, cost
+    return path, _cost(request, path, budget)
+
+
+def _cost(request: Request, path: Floats, budget: Budget) -> float:
+    """Return the cost [m] of a path (m, dim), caller's frame; inf where a limit interrupts it."""
+    return budget.within(lambda: path_cost(request.space, path, request.clearance), math.inf)
 
 
 def optimize(
@@ -201,7 +230,7 @@ def _search(
         return request.planner.start(request.problem, request.stream(number, SEARCH, salt))
 
     def free_path(search: PathSearch) -> Floats | None:
-        path = _in_caller_s_frame(request, search.path)
+        path = in_caller_s_frame(request, search.path)
         return path if request.space.is_path_free(path) else None
 
     def found_by(search: PathSearch) -> Floats | None:
@@ -221,7 +250,8 @@ def search_until_free(
 
     A path so close to a corner that the caller's coordinates round it into the obstacle does not
     count: then the search is repeated with another random stream, with at most ``RESTARTS_MAX``
-    searches in all. ``found`` is None where a limit was met or no path was found.
+    searches in all; one that draws nothing (``PathSearch.taut``) would find the same path again.
+    ``found`` is None where a limit was met or no path was found.
 
     Parameters
     ----------
@@ -245,21 +275,9 @@ def search_until_free(
             status = budget.stop() or status
         if status is not PlannerStatus.SOLVED:
             return status, search, None
+        if getattr(search, 'taut', False):
+            break
     return PlannerStatus.ITERATION_LIMIT, search, None
-
-
-def _in_caller_s_frame(request: Request, points: Floats) -> Floats:
-    """
-    Convert a path (m, dim) from the kernel frame to the caller's frame.
-
-    The first point is exactly the request's start, and the last one exactly its goal where the
-    path ends there.
-    """
-    path = request.space.from_kernel(points)
-    path[0] = request.start
-    if points[-1].tolist() == request.problem.goal.tolist():
-        path[-1] = request.goal
-    return path
 
 
 def _lower_bound(request: Request, search: PathSearch) -> float:
@@ -270,21 +288,3 @@ def _lower_bound(request: Request, search: PathSearch) -> float:
     """
     bound = getattr(search, 'lower_bound', 0.0) * request.space.scale
     return max(bound, request.straight_length)
-
-
-def _shortest_path(request: Request, budget: Budget) -> tuple[PathSearch, Floats | None]:
-    """
-    Search a grid for the shortest path; return the search, and the path (m, 2), caller's frame.
-
-    The path is None where a limit is met first.
-    """
-    space = request.space
-    search = Polyanya().for_space(space).start(request.problem, request.stream(0))
-    if run(search, budget) is not PlannerStatus.SOLVED:
-        return search, None
-
-    def free_path() -> Floats | None:
-        path = _in_caller_s_frame(request, search.path)
-        return path if space.is_path_free(path) else None
-
-    return search, budget.within(free_path, None)

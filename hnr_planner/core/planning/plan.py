@@ -22,7 +22,6 @@ from hnr_planner.core.planning.attempts import (
     Attempt,
     attempt,
     optimize,
-    PROVED,
     with_clearance,
 )
 from hnr_planner.core.planning.ends import Allowance, check_allowance, move_ends, MovedRequest
@@ -36,7 +35,7 @@ from hnr_planner.core.planning.request import (
     Effort,
     Request,
 )
-from hnr_planner.core.planning.result import FirstSolution, PlannerStatus, PlanResult
+from hnr_planner.core.planning.result import FirstSolution, PlannerStatus, PlanResult, proof
 from hnr_planner.core.planning.tiers import with_remark
 from hnr_planner.core.spaces.poses.pose_space import PoseSpace
 from hnr_planner.core.spaces.space import Space
@@ -93,7 +92,8 @@ def plan(
     clearance : float
         Distance to obstacles [m] that the path keeps where it can; narrower passages are passed
         in their middle. 0 for the shortest path. It needs ``simplify`` and a space that
-        measures the distance to its walls.
+        measures the distance to its walls. On a grid, ``auto`` with further searches and
+        ``polyanya`` also search for the shortest path over the cells that keep it everywhere.
     optimize_for : float
         Seconds of the call, within the time limit, for further searches for a shorter path; they
         end once the path is straight. The clock only cuts: searches are bounded by their number,
@@ -105,7 +105,8 @@ def plan(
     alternatives : int
         Number of paths to find, none of which can be deformed into another past an obstacle:
         ``PlanResult.paths``, the shortest first. There may be fewer. All have the same ends, also
-        in a goal region.
+        in a goal region. On a grid and without a clearance each is the shortest path that it can
+        be deformed into.
     goal_tolerance : float
         Where the goal is blocked or cannot be reached, the path ends at the nearest point within
         this distance [m] that can: ``PlanResult.goal_offset`` and the message state it. A goal
@@ -261,7 +262,7 @@ def _result_without_search(
     path, length, samples, first = np.empty((0, len(request.start))), math.inf, 0, None
     if status is PlannerStatus.SOLVED:
         end = request.goal if request.goal_radius == 0.0 else request.start
-        path, samples = np.stack([request.start, end]), 1
+        path, samples = np.array((request.start, end)), 1
         first = FirstSolution(working_time() - began, path_length(path), path)
         path = with_clearance(request, path, budget)
         length = path_length(path)
@@ -288,23 +289,11 @@ def _result_without_search(
 def _message(request: Request, best: Attempt, iterations: int, began: float) -> str:
     """Return a description of how the search of ``best`` ended, with lengths [m] and counts."""
     if best.status is PlannerStatus.SOLVED and best.first is not None:
-        found = f'path of {path_length(best.path):.6g} m with {len(best.path)} vertices'
+        length = path_length(best.path)
+        found = f'path of {length:.6g} m with {len(best.path)} vertices'
         as_found = request.simplify and not best.search.taut and best.path is best.first.path
         nothing = ', of which no shortcut is free' if as_found and len(best.path) > 2 else ''
-        return f'{found} after {iterations} transitions{nothing}{_proof(request, best)}'
+        proved = proof(length, best.lower_bound, request.straight_length)
+        return f'{found} after {iterations} transitions{nothing}{proved}'
     seconds = working_time() - began
     return f'{best.status.value} ({iterations} transitions, {seconds:.3g} s)'
-
-
-def _proof(request: Request, best: Attempt) -> str:
-    """
-    Return what the lower bound proves of the length of the best path, as the end of a message.
-
-    It is empty where the bound is no better than the straight distance.
-    """
-    if best.lower_bound <= request.straight_length:
-        return ''
-    ratio = path_length(best.path) / best.lower_bound
-    if ratio <= PROVED:
-        return ', the shortest'
-    return f', at most {100.0 * (ratio - 1.0):.2g} % longer than the shortest'

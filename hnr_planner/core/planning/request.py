@@ -1,6 +1,7 @@
 """Validation of planning requests, and the outcome of the requests that need no search."""
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 import math
 from typing import Any
 
@@ -158,7 +159,7 @@ class Request:
     seed: int
     problem: Problem
 
-    @property
+    @cached_property
     def straight_length(self) -> float:
         """Straight distance [m] from the start to the goal region: no path is shorter."""
         distance = math.dist(self.start.tolist(), self.goal.tolist())

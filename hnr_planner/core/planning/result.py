@@ -25,6 +25,25 @@ class PlannerStatus(Enum):
     INEVITABLE_COLLISION = 'the start is too fast to avoid a collision'
 
 
+#: A path at most this many times as long as the lower bound counts as the shortest; it is so up to
+#: the margins at which it passes corners.
+PROVED = 1.0 + 1e-6
+
+
+def proof(length: float, lower_bound: float, straight_length: float) -> str:
+    """
+    Return what a lower bound [m] proves of the ``length`` [m] of a path, as part of a message.
+
+    It is empty where the bound is no better than ``straight_length``, the straight distance [m].
+    """
+    if lower_bound <= straight_length:
+        return ''
+    ratio = length / lower_bound
+    if ratio <= PROVED:
+        return ', the shortest'
+    return f', at most {100.0 * (ratio - 1.0):.2g} % longer than the shortest'
+
+
 class FirstSolution(NamedTuple):
     """
     The first path that was found, before it was shortened.

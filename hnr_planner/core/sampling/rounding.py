@@ -6,6 +6,10 @@ rounded by the ellipsoid of its logarithmic barrier, which lies inside and, enla
 points; every set by the covariance of draws, in phases, until that covariance is about the same in
 all directions. Each phase draws in the coordinates of the phase before. A walk that is slow at
 first shows a part of the longest directions only, and more of them in each phase.
+
+The covariance of few draws is longer in some directions than in others even where the set is not:
+to change the coordinates by it would make them worse. So a phase that looks but a little long is
+repeated with twice the draws, until it looks round or more draws make no difference.
 """
 
 import time
@@ -29,6 +33,10 @@ DRAWS_MIN = 200
 #: Ratio of standard deviations up to which a set is round; that of as many independent draws of a
 #: round set is about 1.8.
 ROUND = 2.5
+#: Ratio of standard deviations up to which a phase may look long for want of independent draws.
+DOUBTFUL = 10.0
+#: Ratio of a repeated phase over the ratio before, from which on more draws make no difference.
+SETTLED = 0.8
 #: Largest number of phases.
 PHASES_MAX = 40
 #: Smallest standard deviation that a phase takes for real, as a fraction of the largest.
@@ -70,10 +78,12 @@ def round_space(
         raise RequestError(f'start {at.tolist()} is {space.why_not_free(at)}')
     matrix, origin, walk = _first_map(space, at)
     dim, steps, phase = space.kernel_dim, 0, 0
+    n_draws = max(DRAWS_MIN, DRAWS * dim)
     rounded = RoundedSpace(space, matrix, origin)
     ratio = 1.0
+    # The ratio that the last phase has found in the present coordinates; infinite in the first.
+    before = np.inf
     while dim > 1 and phase < PHASES_MAX:
-        n_draws = max(DRAWS_MIN, DRAWS * dim)
         chains = begin_chains(rounded, space.from_kernel(origin), seed=_seed_of(seed, phase))
         draws, chains = walk_on(rounded, chains, n_draws, walk=walk, thin=THIN * dim)
         steps, phase = steps + int(chains.steps[0]), phase + 1
@@ -81,8 +91,11 @@ def round_space(
         ratio = float(spread[-1] / spread[0])
         if ratio <= ROUND:
             break
+        if ratio <= DOUBTFUL and ratio < SETTLED * before:
+            n_draws, before = 2 * n_draws, ratio
+            continue
         matrix = matrix @ (axes * np.maximum(spread, LEAST * spread[-1])) @ axes.T
-        rounded = RoundedSpace(space, matrix, origin)
+        rounded, before = RoundedSpace(space, matrix, origin), np.inf
     cost = Rounding(phase, steps, time.process_time() - began, ratio)
     return RoundedSpace(space, matrix, origin, cost)
 

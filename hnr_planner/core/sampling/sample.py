@@ -1,6 +1,7 @@
 """Uniform points of a space, by chains of a random walk."""
 
 from hnr_planner.core.checks import check_count, Floats, Seed
+from hnr_planner.core.kernels.modes import in_this_mode
 from hnr_planner.core.sampling.chains import begin_chains, Chains, walk_on
 from hnr_planner.core.sampling.walks import Walk
 from hnr_planner.core.spaces.space import Space
@@ -49,8 +50,9 @@ def sample(
         Fresh when left out. A generator is advanced, so that the next call gives other draws.
     n_jobs : int, optional
         Number of jobs among which joblib shares out the chains, -1 for one on each processor; the
-        draws are the same for any number. The back end (processes, Dask, Ray) is that of
-        ``joblib.parallel_config``, and space and walk have to be such that it can pickle them.
+        draws are the same for any number. The back end (processes, a Dask cluster) is that of
+        ``joblib.parallel_config``, and space and walk have to be such that it can pickle them;
+        functions in them may be lambdas.
         When left out, the chains run in threads of this process.
 
     Returns
@@ -76,7 +78,7 @@ def sample(
     from joblib import delayed, Parallel
 
     parts = Parallel(n_jobs=n_jobs)(
-        delayed(_draw)(space, chains.one(k), n_draws, walk, burn_in, thin)
+        delayed(in_this_mode(_draw))(space, chains.one(k), n_draws, walk, burn_in, thin)
         for k in range(len(chains.points))
     )
     return np.concatenate(parts)

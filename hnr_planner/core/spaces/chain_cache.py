@@ -3,15 +3,16 @@ The cache of a chain: the chain's point, and what a space stores for the chain b
 
 A walk alternately computes the chord through its point and moves along it. A space may reuse
 results of the step before: a polytope stores the distances to its planes, and updates only those
-that a step changes. A polytope registers its own kernels for the functions of this module; every
+that a step changes. A polytope registers its own versions of the functions of this module; every
 other space stores no results.
 """
 
+from functools import singledispatch
 from typing import Any, NamedTuple
 
 from hnr_planner.core.checks import Floats
 from hnr_planner.core.kernels.dispatch import dispatched
-from hnr_planner.core.kernels.kernel import inlined, kernel
+from hnr_planner.core.kernels.kernel import inlined
 from hnr_planner.core.spaces.lines import point_on_line
 from hnr_planner.core.spaces.primitives import chord, CompiledSpace, contains
 
@@ -40,8 +41,7 @@ class ChainCache(NamedTuple):
     back: Floats
 
 
-@dispatched
-@kernel
+@singledispatch
 def memory_size(space: CompiledSpace, dim: int) -> int:
     """Return the number of floats that ``space`` needs for each chain, beside its point."""
     return 2 * dim

@@ -6,7 +6,7 @@ from typing import Any
 from hnr_planner.core.checks import Floats
 from hnr_planner.core.kernels.kernel import kernel
 from hnr_planner.core.spaces.space import MARGIN, Space
-from hnr_planner.core.spaces.transformed import product
+from hnr_planner.core.spaces.transformed import multiply
 import numpy as np
 from numpy.typing import ArrayLike
 
@@ -132,7 +132,8 @@ class RoundedSpace(Space):
     def from_kernel(self, points: Floats) -> Floats:
         """Convert points (..., kernel_dim) to the caller's frame, in a new array."""
         flat = np.ascontiguousarray(points.reshape(-1, points.shape[-1]))
-        moved = _moved_points(self.matrix, self.origin, flat).reshape(points.shape)
+        columns = np.ascontiguousarray(self.matrix.T)
+        moved = _moved_points(columns, self.origin, flat).reshape(points.shape)
         return self.base.from_kernel(moved)
 
     def turn_to_kernel(self, directions: Floats) -> Floats:
@@ -190,16 +191,16 @@ class RoundedSpace(Space):
 
 
 @kernel
-def _moved_points(matrix, origin, points):
+def _moved_points(columns, origin, points):
     """
-    Return ``origin + matrix y`` for points y (n, k), in the order of a transformed space.
+    Return ``origin + matrix y`` for points y (n, k) and the columns (k, k) of the matrix.
 
-    So a point of a chain, of which the transformed space said that it is free, is mapped to the
-    very numbers that were tested.
+    The order of operations is that of a transformed space. So a point of a chain, of which the
+    transformed space said that it is free, is mapped to the very numbers that were tested.
     """
     moved = np.empty(points.shape)
-    for i in range(len(points)):
-        x = product(matrix, points[i])
-        for j in range(len(x)):
-            moved[i, j] = x[j] + origin[j]
+    for n in range(len(points)):
+        multiply(columns, points[n], moved[n])
+        for i in range(len(origin)):
+            moved[n, i] += origin[i]
     return moved

@@ -108,3 +108,17 @@ def product(matrix, u):
         for j in range(len(u)):
             v[i] += matrix[i, j] * u[j]
     return v
+
+
+@kernel
+def multiply(columns, u, v):
+    """
+    Write the product of a matrix, given by its columns (k, m), and ``u`` (k,) into ``v`` (m,).
+
+    The numbers are those of ``product``; column by column the compiler vectorizes.
+    """
+    for i in range(len(v)):
+        v[i] = 0.0
+    for j in range(len(u)):
+        for i in range(len(v)):
+            v[i] += columns[j, i] * u[j]

@@ -21,6 +21,7 @@ from hnr_planner.core.spaces.space import Space
 from hnr_planner.core.theory.rays import lengths_within, pieces
 import numpy as np
 from numpy.typing import NDArray
+from scipy.linalg import eigh
 
 #: The plastic number. Its inverse powers, times k modulo 1, are the coordinates of line k:
 #: Roberts's quasirandom sequence R2.
@@ -200,8 +201,9 @@ def cut_conductance(space: Space, side: Space, n_lines: int, seed: int) -> Estim
 def _second_eigenpair(flow: CellFlow) -> tuple[float, Floats]:
     """Return the second largest eigenvalue of the kernel, and its right eigenvector (m,)."""
     root = np.sqrt(flow.area)
-    values, vectors = np.linalg.eigh(flow.flow / np.outer(root, root))
-    return float(values[-2]), vectors[:, -2] / root
+    second = len(root) - 2
+    values, vectors = eigh(flow.flow / np.outer(root, root), subset_by_index=(second, second))
+    return float(values[0]), vectors[:, 0] / root
 
 
 @kernel

@@ -9,16 +9,20 @@ import math
 from typing import Any
 
 from hnr_planner.core.cancellation import Event
+from hnr_planner.core.checks import check_number
 from hnr_planner.core.kernels.clock import working_time
 from hnr_planner.core.kernels.kernel import interpreted_calls
 from hnr_planner.core.planning.limits import Budget
 from hnr_planner.core.planning.request import check_effort, Effort
 from hnr_planner.core.planning.result import FirstSolution, PlannerStatus
 from hnr_planner.core.planning.tiers import with_remark
+from hnr_planner.core.spaces.grid.grid_space import GridSpace
 from hnr_planner.core.spaces.space import Space
+from hnr_planner.core.systems.car import Car
 from hnr_planner.core.systems.system import System
 from hnr_planner.core.systems.trajectory import Trajectory
 from hnr_planner.core.trajectories.attempt import Found, search_trajectory, shortened
+from hnr_planner.core.trajectories.car import plan_car
 from hnr_planner.core.trajectories.problem import Boundary, KinodynamicPlanner, KinodynamicSearch
 from hnr_planner.core.trajectories.reduce import STEPS_MAX
 from hnr_planner.core.trajectories.request import (
@@ -64,17 +68,20 @@ def plan_trajectory(
         State of the system in the caller's frame: position, then the velocity of a
         ``DoubleIntegrator``, or heading and speed of a ``Car``.
     goal : (dim,)
-        Position to reach, in the caller's frame [m].
+        Position to reach, in the caller's frame [m]; for a ``Car`` on a grid also a pose
+        (x, y, heading).
     algorithm : str or planner
         A name of ``KINODYNAMIC_ALGORITHMS`` or a planner value such as
         ``KinodynamicRRT(time_step=0.2)``. 'auto' is ``kinodynamic_connect`` for a
-        ``DoubleIntegrator``, ``kinodynamic_rrt`` for other systems.
+        ``DoubleIntegrator``. For a ``Car`` on a grid with a forbidden boundary it is
+        ``hit_and_run_connect`` in the space of poses and the fastest drive along its path, which
+        ends at rest; else ``kinodynamic_rrt``.
     goal_radius : float
         Above 0 the trajectory ends within this distance [m] of the goal; at 0 exactly at the goal,
-        which ``kinodynamic_connect`` alone can do.
+        which ``kinodynamic_rrt`` and ``kinodynamic_hit_and_run`` cannot do.
     goal_speed : float
-        Largest speed at the end [m/s]; inf for any. ``kinodynamic_connect`` alone can end at rest
-        (0).
+        Largest speed at the end [m/s]; inf for any. ``kinodynamic_rrt`` and
+        ``kinodynamic_hit_and_run`` cannot end at rest (0).
     boundary : 'forbidden' or 'inelastic'
         Effect of the boundary of the space. Forbidden: it is never met, and the end of the
         trajectory can be braked straight to rest before it; a start whose collision can be proved
@@ -88,8 +95,9 @@ def plan_trajectory(
         Seed of the random streams. Left out: a new random seed; the result has the seed used.
     simplify : bool, optional
         Whether the trajectory is shortened in time. Left out: where that can be done, for a
-        ``DoubleIntegrator``; and one of more than 10,000 steps that cannot be shortened is
-        refused. False: the trajectory is returned as it was found, however long it is.
+        ``DoubleIntegrator`` and by 'auto' for a ``Car`` on a grid; and one of more than 10,000
+        steps that cannot be shortened is refused. False: the trajectory is returned as it was
+        found, however long it is.
     optimize_for : float
         Seconds of the call, within the time limit, in which the trajectory is shortened further.
     optimize_iterations : int
@@ -98,7 +106,8 @@ def plan_trajectory(
     cancel : threading.Event, optional
         Ends the call once it is set.
     **settings
-        Settings of the planner that ``algorithm`` names.
+        Settings of the planner that ``algorithm`` names; for a ``Car`` by 'auto' on a grid
+        ``heading_tolerance`` [rad] and ``reverse_penalty``, as in ``plan`` in a ``PoseSpace``.
 
     Returns
     -------
@@ -119,6 +128,25 @@ def plan_trajectory(
         optimize_iterations=optimize_iterations,
         cancel=cancel,
     )
+    if (
+        isinstance(system, Car)
+        and isinstance(space, GridSpace)
+        and (algorithm, boundary) == ('auto', 'forbidden')
+    ):
+        check_number('goal_speed', goal_speed, 0.0)  # the car ends at rest: within any
+        before = interpreted_calls()
+        driven = plan_car(
+            space,
+            system,
+            start,
+            goal,
+            effort,
+            goal_radius=goal_radius,
+            simplify=simplify,
+            seed=seed,
+            **settings,
+        )
+        return with_remark(driven, before)
     request = check_kinodynamic_request(
         space,
         system,

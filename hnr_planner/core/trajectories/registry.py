@@ -36,7 +36,10 @@ KINODYNAMIC_ENTRIES = (
     ),
 )
 #: Description of 'auto', in one line.
-AUTO_SUMMARY = 'kinodynamic_connect for a double integrator, kinodynamic_rrt for other systems'
+AUTO_SUMMARY = (
+    'kinodynamic_connect for a double integrator, a path of poses for a car on a grid, '
+    'kinodynamic_rrt for other systems'
+)
 
 #: Names that ``plan_trajectory`` takes.
 KINODYNAMIC_ALGORITHMS = ('auto', *(entry.name for entry in KINODYNAMIC_ENTRIES))

@@ -4,6 +4,7 @@ from collections.abc import Callable
 
 from diagnostic_msgs.msg import DiagnosticArray
 from hnr_planner.core.kernels.compilation import status
+from hnr_planner.ros.interfaces.publisher import NO_EVENTS
 from hnr_planner.ros.interfaces.request_server import RequestServer
 from hnr_planner.ros.map.map_input import MapInput
 from hnr_planner.ros.messages.outcomes import health_message
@@ -38,7 +39,9 @@ class Health:
         self._node = node
         self._find_map_input = find_map_input
         self._server = server
-        self._publisher = node.create_publisher(DiagnosticArray, '/diagnostics', 10)
+        self._publisher = node.create_publisher(
+            DiagnosticArray, '/diagnostics', 10, event_callbacks=NO_EVENTS
+        )
         node.create_timer(
             PERIOD,
             self._publish,

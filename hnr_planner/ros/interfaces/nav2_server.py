@@ -13,7 +13,7 @@ from builtin_interfaces.msg import Duration
 from geometry_msgs.msg import PoseStamped
 from hnr_planner.ros.interfaces.request_server import RequestServer
 from hnr_planner.ros.messages.action_results import PathResults
-from hnr_planner.ros.messages.paths import points_from_path, pose_from_message
+from hnr_planner.ros.messages.paths import pose_from_message, poses_from_path
 from hnr_planner.server.nav2 import error_name, goal_request, robot_pose
 from hnr_planner.server.outcomes import Refusal
 from hnr_planner.server.path_validity import judge_path
@@ -100,12 +100,13 @@ class Nav2Server:
         try:
             wishes.check(self._settings())
             snapshot = self._newest_map()
+            _ = snapshot.pose_space  # refused where the robot does not fit into the map
         except Refusal as refusal:
             why = f'{refusal.outcome.name}: {refusal.why}'
         else:
-            points, frame = points_from_path(request.path), request.path.header.frame_id
+            poses, frame = poses_from_path(request.path), request.path.header.frame_id
             robot = self._find_robot(snapshot.frame)
-            verdict = judge_path(points, frame, snapshot, robot, wishes.lookahead)
+            verdict = judge_path(poses, frame, snapshot, robot, wishes.lookahead)
             response.is_valid = not verdict.why
             response.invalid_pose_indices = verdict.blocked[: wishes.most_indices]
             if hasattr(response, 'success'):

@@ -8,7 +8,7 @@ from typing import Any
 
 from hnr_planner.ros.messages.markers import serialised_markers
 from hnr_planner.ros.messages.paths import serialised_path
-from hnr_planner.ros.messages.samples import draws_message, samples_message
+from hnr_planner.ros.messages.samples import serialised_draws, serialised_samples
 from hnr_planner.ros.messages.trajectories import serialised_trajectory
 from hnr_planner.server.request_log import LogEntry
 from hnr_planner.server.responses import PlanResponse, Response, SampleResponse
@@ -97,7 +97,7 @@ class PlanPublication(Publication):
     def pictures(self) -> Pictures:
         """Return the samples of the search, and the markers that show it in RViz."""
         return {
-            'samples': lambda: samples_message(
+            'samples': lambda: serialised_samples(
                 self.response.result, self.samples_max, self.header
             ),
             'markers': lambda: serialised_markers(self.response, self.header),
@@ -112,4 +112,4 @@ class SamplePublication(Publication):
 
     def messages(self) -> Messages:
         """Yield the draws as a point cloud; it is empty after a failure."""
-        yield 'samples', draws_message(self.response, self.header)
+        yield 'samples', serialised_draws(self.response, self.header)

@@ -33,6 +33,10 @@ LONGEST_DELIVERY = Duration(seconds=0.2)
 #: it wait for it too.
 LONGEST_HOLD = 0.1
 
+#: Events of a publisher of the node: none. Those of rclpy warn of subscribers that ask for more
+#: than is offered, which latched topics rule out, and each costs time at every request.
+NO_EVENTS = PublisherEventCallbacks(use_default_callbacks=False)
+
 #: Topics with pictures for people, of those of publications.
 PICTURES = ('samples', 'markers')
 
@@ -63,7 +67,9 @@ class Publisher:
         self._logger = node.get_logger()
         self._stamps = _Stamps(node.get_clock())
         self._wake: queue.SimpleQueue[_Wake] = queue.SimpleQueue()
-        self._outcome = node.create_publisher(DiagnosticArray, '~/outcome', latched(OUTCOMES_KEPT))
+        self._outcome = node.create_publisher(
+            DiagnosticArray, '~/outcome', latched(OUTCOMES_KEPT), event_callbacks=NO_EVENTS
+        )
         self._publishers = {
             topic: node.create_publisher(
                 kind,
@@ -137,11 +143,13 @@ class Publisher:
         self._log(publication.log)
         self._publish(publication, response)
 
-    def _on_match(self, topic: str) -> PublisherEventCallbacks | None:
+    def _on_match(self, topic: str) -> PublisherEventCallbacks:
         """Return what makes the picture of a topic once a subscriber is there."""
         if topic not in PICTURES:
-            return None
-        return PublisherEventCallbacks(matched=lambda _: self._wake.put(_Wake.SUBSCRIBER))
+            return NO_EVENTS
+        return PublisherEventCallbacks(
+            matched=lambda _: self._wake.put(_Wake.SUBSCRIBER), use_default_callbacks=False
+        )
 
     def _log(self, entry: LogEntry) -> None:
         # A line of source for each level: rclpy refuses to log at two levels from one.

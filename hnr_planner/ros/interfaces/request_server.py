@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from builtin_interfaces.msg import Time
 from hnr_planner.ros.interfaces.publications import PlanPublication, SamplePublication
-from hnr_planner.ros.interfaces.publisher import latched, Publisher
+from hnr_planner.ros.interfaces.publisher import latched, NO_EVENTS, Publisher
 from hnr_planner.server.path_monitor import PathMonitor
 from hnr_planner.server.planning_server import PlanningServer
 from hnr_planner.server.request_log import RequestLog
@@ -58,7 +58,9 @@ class RequestServer:
         self._server = PlanningServer(settings, newest_map, to_frame, self._log_defect)
         self._publisher = Publisher(node)
         self._log = RequestLog()
-        self._path_valid = node.create_publisher(Bool, f'~/{PATH_VALID}', latched(1))
+        self._path_valid = node.create_publisher(
+            Bool, f'~/{PATH_VALID}', latched(1), event_callbacks=NO_EVENTS
+        )
         self._in_order = threading.Lock()
         self.path_monitor = PathMonitor(newest_map, self._report_path)
         self.searches = self._server.searches

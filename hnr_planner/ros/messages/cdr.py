@@ -58,29 +58,31 @@ def with_elements(
     Parameters
     ----------
     short : three of bytes
-        The serialised message with the first 0, 1 and 2 elements of the sequence. Each element
-        from the second one on has the same size, a multiple of eight bytes.
+        The serialised message with 0, 1 and 2 elements in the sequence. Each element from the
+        second one on has the same size, a multiple of eight bytes.
     fields : sequence of (int, (n, k))
         The parts of an element that differ between the n elements: the number of bytes from the
         beginning of the part to the end of the element, and k numbers for each element, in the
-        number type of the message. All else is as in the second element.
+        number type of the message. All else is as in the first two elements.
     n_after : int
         Number of bytes after the sequence, the same in each form: no number there has more than
         four bytes.
 
     """
     count = len(fields[0][1])
-    if count < len(short):
-        return short[count]
+    if count == 0:
+        return short[0]
     none, one, two = (form[: len(form) - n_after] for form in short)
     n_none, n_one, n_two = len(none), len(one), len(two)
-    after = short[2][n_two:]
-    others = np.tile(np.frombuffer(two[n_one:], dtype=np.uint8), (count - 1, 1))
-    for before_end, numbers in fields:
-        data = np.ascontiguousarray(numbers[1:]).view(np.uint8)
-        begin = others.shape[1] - before_end
-        end = begin + data.shape[1]
-        others[:, begin:end] = data
     # Without elements, the sequence is its length, in four bytes.
-    length = np.uint32(count).tobytes()
-    return b''.join([none[:-4], length, one[n_none:], others.tobytes(), after])
+    pieces = [none[:-4], np.uint32(count).tobytes()]
+    for element, which in ((one[n_none:], slice(1)), (two[n_one:], slice(1, count))):
+        rows = np.empty((len(range(count)[which]), len(element)), dtype=np.uint8)
+        rows[:] = np.frombuffer(element, dtype=np.uint8)
+        for before_end, numbers in fields if len(rows) > 0 else ():
+            data = np.ascontiguousarray(numbers[which]).view(np.uint8)
+            begin = len(element) - before_end
+            end = begin + data.shape[1]
+            rows[:, begin:end] = data
+        pieces.append(rows.tobytes())
+    return b''.join([*pieces, short[2][n_two:]])

@@ -13,6 +13,7 @@ COLOURS = {
     'samples': ColorRGBA(r=0.10, g=0.45, b=0.85, a=0.9),
     'tree': ColorRGBA(r=0.45, g=0.65, b=0.90, a=0.5),
     'path': ColorRGBA(r=0.90, g=0.25, b=0.10, a=1.0),
+    'footprint': ColorRGBA(r=0.90, g=0.45, b=0.20, a=0.35),
     'start': ColorRGBA(r=0.10, g=0.65, b=0.25, a=1.0),
     'goal': ColorRGBA(r=0.75, g=0.10, b=0.55, a=1.0),
 }
@@ -29,7 +30,7 @@ TYPES = {
 
 def serialised_markers(response: PlanResponse, header: Header) -> bytes:
     """
-    Return a serialised MarkerArray of samples, tree, path, start and goal of a solved request.
+    Return a serialised MarkerArray of samples, tree, path and ends of a solved request.
 
     The first marker deletes the markers of earlier requests; after a failure it is the only one.
     """

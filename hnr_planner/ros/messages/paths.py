@@ -1,7 +1,11 @@
 """Conversion of ``nav_msgs/GetPlan`` to requests, and of ``nav_msgs/Path`` to and from poses."""
 
+from functools import lru_cache
+import struct
+
 from geometry_msgs.msg import PoseStamped
 from hnr_planner.ros.messages.cdr import with_elements
+from hnr_planner.server.pose_motions import poses_of
 from hnr_planner.server.received_maps import as_written
 from hnr_planner.server.requests import PlanRequest, Pose
 from nav_msgs.msg import Path
@@ -13,6 +17,10 @@ from std_msgs.msg import Header
 
 #: Number of bytes at the end of a serialised pose that are its seven numbers.
 POSE_BYTES = 56
+
+#: The bytes of a stamp that stands for any other; they occur nowhere else in a path of zeros,
+#: since no text has such bytes.
+_ANY_STAMP = b'\xff' * 8
 
 
 def request_from_message(message: GetPlan.Request, algorithm: str) -> PlanRequest:
@@ -38,10 +46,13 @@ def pose_from_message(message: PoseStamped) -> Pose:
     )
 
 
-def points_from_path(message: Path) -> NDArray[np.float64]:
-    """Return the positions x, y (n, 2) [m] of the poses in ``message``, in the frame they have."""
-    positions = [stamped.pose.position for stamped in message.poses]
-    return np.array([(position.x, position.y) for position in positions]).reshape(-1, 2)
+def poses_from_path(message: Path) -> NDArray[np.float64]:
+    """Return the poses x, y, yaw (n, 3) [m, m, rad] in ``message``, in the frame they have."""
+    rows = [
+        (position.x, position.y, position.z, turn.x, turn.y, turn.z, turn.w)
+        for position, turn in ((p.pose.position, p.pose.orientation) for p in message.poses)
+    ]
+    return poses_of(np.array(rows).reshape(-1, 7))
 
 
 def path_message(rows: NDArray[np.float64], header: Header) -> Path:
@@ -58,8 +69,17 @@ def path_message(rows: NDArray[np.float64], header: Header) -> Path:
 
 def serialised_path(rows: NDArray[np.float64], header: Header) -> bytes:
     """Return the serialised form of ``path_message(rows, header)``, without objects for poses."""
-    short = [serialize_message(path_message(rows[:n_poses], header)) for n_poses in range(3)]
+    stamp = struct.pack('=iI', header.stamp.sec, header.stamp.nanosec)
+    short = [form.replace(_ANY_STAMP, stamp) for form in _forms(header.frame_id)]
     return with_elements(short, [(POSE_BYTES, rows)])
+
+
+@lru_cache(maxsize=16)
+def _forms(frame: str) -> list[bytes]:
+    """Return serialised paths of 0, 1 and 2 poses in a frame, stamped ``_ANY_STAMP``."""
+    header, rows = Header(frame_id=frame), np.zeros((2, 7))
+    header.stamp.sec, header.stamp.nanosec = struct.unpack('=iI', _ANY_STAMP)
+    return [serialize_message(path_message(rows[:n_poses], header)) for n_poses in range(3)]
 
 
 def _stamped(row: list[float], header: Header) -> PoseStamped:

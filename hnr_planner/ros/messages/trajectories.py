@@ -15,6 +15,9 @@ from trajectory_msgs.msg import MultiDOFJointTrajectory, MultiDOFJointTrajectory
 
 Floats = NDArray[np.float64]
 
+#: The name of the only joint of a trajectory: the robot's base.
+JOINT = 'base'
+
 
 class _Columns(NamedTuple):
     """
@@ -45,6 +48,9 @@ def serialised_trajectory(trajectory: Trajectory | None, header: Header) -> byte
     that begins there, and one for the end, with 0. Between points, positions are quadratic in
     time, so that a cubic through positions and velocities is exact.
     """
+    if trajectory is None:
+        none = MultiDOFJointTrajectory(header=header, joint_names=[JOINT])
+        return bytes(serialize_message(none))
     columns = _columns(trajectory)
     short = [serialize_message(_message(columns, n, header)) for n in range(3)]
     # A point is three sequences of one element, each after its length, and then the time.
@@ -57,19 +63,18 @@ def serialised_trajectory(trajectory: Trajectory | None, header: Header) -> byte
     return with_elements(short, fields)
 
 
-def _columns(trajectory: Trajectory | None) -> _Columns:
-    """Return the points of a trajectory as arrays; they are empty for None."""
-    n_points = 0 if trajectory is None else len(trajectory.times)
+def _columns(trajectory: Trajectory) -> _Columns:
+    """Return the points of a trajectory as arrays."""
+    n_points = len(trajectory.times)
     transforms, velocities, accelerations = (np.zeros((n_points, n)) for n in (7, 6, 6))
     times = np.zeros((n_points, 2), dtype=np.int32)
-    if trajectory is not None:
-        yaws = yaws_along(trajectory)
-        transforms[:, :2] = trajectory.states[:, :2]
-        transforms[:, 5], transforms[:, 6] = np.sin(yaws / 2.0), np.cos(yaws / 2.0)
-        velocities[:, :2] = trajectory.states[:, 2:]
-        accelerations[:-1, :2] = trajectory.controls
-        nanoseconds = np.rint(trajectory.times * 1e9).astype(np.int64)
-        times[:, 0], times[:, 1] = np.divmod(nanoseconds, 10**9)
+    yaws = yaws_along(trajectory)
+    transforms[:, :2] = trajectory.states[:, :2]
+    transforms[:, 5], transforms[:, 6] = np.sin(yaws / 2.0), np.cos(yaws / 2.0)
+    velocities[:, :2] = trajectory.states[:, 2:]
+    accelerations[:-1, :2] = trajectory.controls
+    nanoseconds = np.rint(trajectory.times * 1e9).astype(np.int64)
+    times[:, 0], times[:, 1] = np.divmod(nanoseconds, 10**9)
     return _Columns(transforms, velocities, accelerations, times)
 
 
@@ -77,7 +82,7 @@ def _message(columns: _Columns, n_points: int, header: Header) -> MultiDOFJointT
     """Return the message object with the first ``n_points`` points, or all if there are fewer."""
     rows = zip(*(column[:n_points].tolist() for column in columns), strict=True)
     return MultiDOFJointTrajectory(
-        header=header, joint_names=['base'], points=[_point(*row) for row in rows]
+        header=header, joint_names=[JOINT], points=[_point(*row) for row in rows]
     )
 
 

@@ -36,6 +36,16 @@ class BoundedCallbackGroup(CallbackGroup):
 
     def ending_execution(self, entity: Any) -> None:
         """Count one running callback less, and call ``afterwards``."""
+        self.end()
+
+    def end(self) -> bool:
+        """
+        Count one running callback less, and call ``afterwards``.
+
+        Return whether the group was full: whether another callback may have waited for its turn.
+        """
         with self._lock:
+            was_full = self._free == 0
             self._free += 1
         self._afterwards()
+        return was_full

@@ -3,7 +3,7 @@
 from functools import partial
 import time
 
-from hnr_planner.core import KINODYNAMIC_PLANNERS
+from hnr_planner.core import compile_in_background, KINODYNAMIC_PLANNERS
 from hnr_planner.ros.interfaces.health import Health
 from hnr_planner.ros.interfaces.nav2_server import HAVE_NAV2, Nav2Server
 from hnr_planner.ros.interfaces.request_server import RequestServer
@@ -16,6 +16,7 @@ from hnr_planner.ros.node.callback_group import BoundedCallbackGroup
 from hnr_planner.ros.node.managed_node import ManagedNode
 from hnr_planner.ros.node.parameters import Parameters, warn_of_unknown_parameters
 from hnr_planner.ros.node.transforms import Transforms
+from hnr_planner.ros.node.watch_process import WatchProcess
 from hnr_planner.server.map_store import MapSnapshot
 from hnr_planner.server.outcomes import Outcome, Refusal
 from hnr_planner.server.requests import Pose
@@ -61,6 +62,8 @@ class PlannerNode(ManagedNode):
         super().__init__('hnr_planner')
         self._parameters_in_force = Parameters(self, self._use_settings)
         warn_of_unknown_parameters(self)
+        self._has_footprint = False
+        self._follow_footprint(self.settings)
         self._map_input: MapInput | None = None
         self._transforms: Transforms | None = None
         self._bond: NodeBond | None = None
@@ -101,6 +104,8 @@ class PlannerNode(ManagedNode):
             )
         self._rviz_tools = RvizTools(self, self._server, lambda: self.settings, searches)
         self._rviz_tools.listen(self.settings.rviz_clicks)
+        port = self.settings.watch_port
+        self._watch = WatchProcess(self, port) if port else None
 
     @property
     def settings(self) -> Settings:
@@ -157,6 +162,8 @@ class PlannerNode(ManagedNode):
 
     def destroy_node(self) -> None:
         """Publish what still waits to be published, then destroy the node."""
+        if self._watch is not None:
+            self._watch.close()
         self._server.close()
         super().destroy_node()
 
@@ -182,9 +189,18 @@ class PlannerNode(ManagedNode):
     def _use_settings(self, settings: Settings) -> None:
         """Put changed parameters into use: click tools, the space of the map, the roadmap."""
         self._rviz_tools.listen(settings.rviz_clicks)
+        self._follow_footprint(settings)
         if self._map_input is not None:
             self._map_input.use(settings)
             self._server.follow_map()
+
+    def _follow_footprint(self, settings: Settings) -> None:
+        """Compile what a footprint needs once one is set, and log what it makes unused."""
+        if settings.vertices and not self._has_footprint:
+            compile_in_background('poses')
+            if settings.robot_radius > 0.0:
+                self.get_logger().warning('robot_radius is not used: the robot has a footprint')
+        self._has_footprint = bool(settings.vertices)
 
     def _plan(
         self,

@@ -52,8 +52,7 @@ def _make_node() -> PlannerNode:
         node.trigger_activate()
     services = ', '.join(node.resolve_service_name(f'~/{name}') for name in SERVICES)
     ready = f'ready after {_process_age():.1f} s, {node.state}'
-    radius = f'robot radius {node.settings.robot_radius:g} m'
-    node.get_logger().info(shortened(f'{ready}, {radius}: {services}'))
+    node.get_logger().info(shortened(f'{ready}, {node.settings.robot}: {services}'))
     return node
 
 

@@ -19,10 +19,10 @@ from types import FrameType
 from typing import TypeVar
 
 from hnr_planner.core.errors import HnrError
+from hnr_planner.ros.node.executor import Executor
 from hnr_planner.ros.node.memory import give_back_large_blocks
 import rclpy
 from rclpy.exceptions import ParameterException
-from rclpy.executors import MultiThreadedExecutor
 from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.impl.rcutils_logger import RcutilsLogger
 from rclpy.logging import get_logger
@@ -101,7 +101,7 @@ def _spin(
 
     Return the exit code: 1 when a callback raised, else 0.
     """
-    executor = _Executor(threads)
+    executor = Executor(threads)
     executor.add_node(node)
     failures: list[Exception] = []
     ending = threading.Event()
@@ -129,15 +129,6 @@ def _spin(
     for failure in failures:
         traceback.print_exception(failure)
     return 1 if failures else 0
-
-
-class _Executor(MultiThreadedExecutor):
-    """An executor that can wait for its running callbacks before it shuts down."""
-
-    def finish(self) -> None:
-        """Wait until all callbacks that have begun are done, then shut the executor down."""
-        self._executor.shutdown(wait=True)
-        self.shutdown()
 
 
 class _StopSignal:

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from functools import cache
+import os
 from test.core.planning.searches import plan
 from test.dense_check import collisions
 from typing import NamedTuple
@@ -28,6 +29,8 @@ import numpy as np
 from numpy.typing import NDArray
 import pytest
 import shapely
+
+pytestmark = pytest.mark.interpreted
 
 #: Planners of every space; ``polyanya`` plans on grids.
 NAMES = [name for name in ALGORITHMS if name not in ('auto', 'polyanya')]
@@ -195,8 +198,8 @@ SCENES = {
     'slit': cache(slit),
     'tables': cache(tables),
 }
-#: Scenes whose searches take less time interpreted than their kernels take to compile.
-SMALL = ('lift', 'cells', 'slit', 'tables')
+#: Seeds of the searches; interpreted, one of them takes less time than the kernels to compile.
+SEEDS = range(3) if 'HNR_COMPILE_ALL' in os.environ else range(1)
 EVERY_PLANNER = ('balls, 2-D', 'balls, 3-D', 'balls, 6-D', 'star')
 
 
@@ -205,7 +208,7 @@ def test_scenes_are_what_they_are_said_to_be(name: str):
     """Who judges the paths agrees with the space on many points, and on none by accident."""
     space, is_free, start, goal, blocked, _ = SCENES[name]()
     lower, upper = space.bounds
-    points = np.random.default_rng(1).uniform(lower, upper, (20_000, space.dim))
+    points = np.random.default_rng(1).uniform(lower, upper, (4_000, space.dim))
     free = is_free(points)
     assert space.contains(points).tolist() == free.tolist()
     assert free.any() and not free.all()
@@ -216,7 +219,7 @@ def test_scenes_are_what_they_are_said_to_be(name: str):
 @pytest.mark.parametrize(
     ('name', 'algorithm'),
     [
-        pytest.param(name, algorithm, marks=[pytest.mark.interpreted] * (name in SMALL))
+        (name, algorithm)
         for name in SCENES
         for algorithm in (NAMES if name in EVERY_PLANNER else ['auto'])
     ],
@@ -224,7 +227,7 @@ def test_scenes_are_what_they_are_said_to_be(name: str):
 def test_paths_are_free_and_end_where_they_should(name: str, algorithm: str):
     scene = SCENES[name]()
     space, start, goal = scene.space, scene.start, scene.goal
-    for seed in range(3):
+    for seed in SEEDS:
         for is_simplified in (False, True):
             result = plan(
                 space,
@@ -233,7 +236,6 @@ def test_paths_are_free_and_end_where_they_should(name: str, algorithm: str):
                 algorithm=algorithm,
                 seed=seed,
                 simplify=is_simplified,
-                time_limit=60.0,
             )
             assert result.status is PlannerStatus.SOLVED, result.message
             assert scene.collisions(result.path) == []
@@ -243,15 +245,12 @@ def test_paths_are_free_and_end_where_they_should(name: str, algorithm: str):
     assert result.length >= np.linalg.norm(goal - start)
 
 
-@pytest.mark.parametrize(
-    'name',
-    [pytest.param(name, marks=[pytest.mark.interpreted] * (name in SMALL)) for name in SCENES],
-)
+@pytest.mark.parametrize('name', SCENES)
 def test_regions_are_reached_and_ends_that_are_not_free_refused(name: str):
     scene = SCENES[name]()
     space, start, goal, blocked = scene.space, scene.start, scene.goal, scene.blocked
     radius = 0.05 * diagonal(space)
-    result = plan(space, start, goal, goal_radius=radius, seed=5, time_limit=60.0)
+    result = plan(space, start, goal, goal_radius=radius, seed=5)
     assert result.status is PlannerStatus.SOLVED
     assert np.linalg.norm(result.path[-1] - goal) <= radius
     assert scene.collisions(result.path) == []
@@ -291,7 +290,6 @@ def test_a_line_with_a_gap_is_searched_and_given_up(algorithm: str):
     assert (result.samples < 0.4).sum() + (result.samples > 0.6).sum() == len(result.samples)
 
 
-@pytest.mark.interpreted
 def test_components_are_distinguished_without_a_search():
     two = PolygonSpace(shapely.MultiPolygon([shapely.box(0, 0, 1, 1), shapely.box(1, 1, 2, 2)]))
     lifted = ProductSpace(two, BoxSpace([0.0], [1.0]))
@@ -303,7 +301,6 @@ def test_components_are_distinguished_without_a_search():
         assert plan(space, [0.2, 0.2, *rest], [0.8, 0.8, *rest], seed=0).path.shape[0] >= 2
 
 
-@pytest.mark.interpreted
 def test_further_paths_pass_holes_of_a_polygon_on_other_sides():
     hall = shapely.box(0, 0, 10, 6).difference(shapely.box(4, 2, 6, 4))
     space = PolygonSpace(hall)

@@ -4,6 +4,7 @@ from test.core.sampling.gate_sets import hall_and_dome, SETS, u_shape
 from test.sampling_gate import (
     ALPHA,
     ball_step,
+    N_LAW,
     N_ONE_STEP,
     one_step,
     same_ball_step,
@@ -16,8 +17,6 @@ from test.sampling_gate import (
 import numpy as np
 import pytest
 
-N_STATIONARITY = 200_000
-N_REVERSIBILITY = 200_000
 BALL = 5.0
 
 
@@ -134,8 +133,8 @@ def of_the_law(walk, region):
     """Return the p-values of the tests of what a walk keeps."""
     step = step_of(walk, region)
     return {
-        'T2': t2_stationarity(region, step, N_STATIONARITY, seed=9),
-        'T3': t3_reversibility(region, step, N_REVERSIBILITY, seed=10),
+        'T2': t2_stationarity(region, step, N_LAW, seed=9),
+        'T3': t3_reversibility(region, step, N_LAW, seed=10),
     }
 
 
@@ -153,7 +152,7 @@ def test_the_right_walk_passes(name):
         (direction_from_a_box, ('T1',)),
         (directions_in_whole_degrees, ('T1',)),
         (all_pieces_of_the_line, ('T1',)),
-        (beta_on_the_chord, ('T1', 'T2')),
+        (beta_on_the_chord, ('T1',)),
         (ends_cut, ('T5',)),
         (never_quite_to_the_far_end, ('T5',)),
         (both_axes_in_turn, ('T3',)),
@@ -200,7 +199,7 @@ def test_what_is_wrong_in_a_ball_is_caught(walk, segment_visible):
     """Only drawing again breaks the uniform law: the others are found by their single steps."""
     region, _, points = u_shape()
     step, right = step_of(walk, region), ball_step(region, BALL, segment_visible=segment_visible)
-    assert same_ball_step(step, right, points[0], BALL, N_ONE_STEP, seed=11) < ALPHA
-    assert same_ball_step(right, right, points[0], BALL, N_ONE_STEP, seed=12) > ALPHA
-    kept = t2_stationarity(region, step, N_STATIONARITY, seed=13) > ALPHA
+    assert same_ball_step(step, right, points[0], BALL, N_LAW, seed=11) < ALPHA
+    assert same_ball_step(right, right, points[0], BALL, N_LAW, seed=12) > ALPHA
+    kept = t2_stationarity(region, step, N_LAW, seed=13) > ALPHA
     assert kept == (walk is not ball_until_free)

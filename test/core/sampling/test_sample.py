@@ -5,7 +5,16 @@ import pickle
 from test.laws import maps
 from test.laws.spaces import SPACES
 
-from hnr_planner.core import begin_chains, BoxSpace, GridSpace, RequestError, sample, WALKS
+from hnr_planner.core import (
+    begin_chains,
+    BoxSpace,
+    GridSpace,
+    OracleSpace,
+    RequestError,
+    sample,
+    WALKS,
+)
+from hnr_planner.core.kernels import modes
 import joblib
 import numpy as np
 import pytest
@@ -111,3 +120,16 @@ def test_jobs_of_joblib_give_the_same_draws():
     np.testing.assert_array_equal(draws, expected)
     draws = sample(space, (0.5, 0.5), 20, n_jobs=2, **options)  # in processes
     np.testing.assert_array_equal(draws, expected)
+
+
+def test_threads_of_chains_run_kernels_in_the_mode_of_the_caller():
+    seen = set()
+
+    def contains(_):
+        seen.add(modes.mode())
+        return True
+
+    with modes.mode_of_thread(modes.Mode.INTERPRETED):
+        space = OracleSpace(contains, (0.0, 0.0), (1.0, 1.0), resolution=0.1)
+        sample(space, (0.5, 0.5), 2, n_chains=2, seed=1)
+    assert seen == {modes.Mode.INTERPRETED}

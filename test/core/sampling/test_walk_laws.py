@@ -9,6 +9,7 @@ from test.core.sampling.gate_sets import GateSet, SETS
 from test.sampling_gate import (
     ALPHA,
     ball_step,
+    N_LAW,
     N_ONE_STEP,
     one_step,
     same_ball_step,
@@ -24,19 +25,26 @@ import numpy as np
 import pytest
 from scipy import stats
 
-N_STATIONARITY = 100_000
-N_BALL = 200_000
-N_REVERSIBILITY = 200_000
-N_CHAINS = 2_000
+N_COORDINATE = 100_000
+N_CHAINS, N_STEPS = 2_000, 200
+
+#: Sets whose walks would be compiled for them alone.
+FURTHER = ('hall and dome', 'court with pillars', 'banana, 3-D')
+
+
+def marked(name: str, *values: object) -> object:
+    """Return a parameter that belongs to the sweeps if its set does."""
+    return pytest.param(name, *values, marks=[pytest.mark.sweep] * (name in FURTHER))
+
 
 EACH_WALK = pytest.mark.parametrize('walk', WALKS)
 ONE_STEP = pytest.mark.parametrize(
     ('name', 'k'),
-    [(name, k) for name, gate_set in SETS.items() for k in range(len(gate_set().points))],
+    [marked(name, k) for name, gate_set in SETS.items() for k in range(len(gate_set().points))],
 )
 
 
-@pytest.fixture(params=SETS)
+@pytest.fixture(params=map(marked, SETS))
 def gate_set(request) -> GateSet:
     return SETS[request.param]()
 
@@ -56,7 +64,7 @@ def test_one_step_of_coordinate_hit_and_run(name, k):
     """Any axis as often as any other, and uniform on the chord."""
     region, space, points = SETS[name]()
     step = step_of('coordinate_hit_and_run', space)
-    directions, position = one_step(region, step, points[k], N_STATIONARITY, seed=k)
+    directions, position = one_step(region, step, points[k], N_COORDINATE, seed=k)
     axis = directions.argmax(axis=1)
     assert (np.abs(directions).sum(axis=1) == 1.0).all()
     assert ((position > 0) & (position < 1)).all()
@@ -77,48 +85,49 @@ def test_the_ball_walk_is_the_one_of_its_definition(gate_set, segment_visible):
     step = step_of(BallWalk(radius, segment_visible=segment_visible), space)
     right = ball_step(region, radius, segment_visible=segment_visible)
     for k, point in enumerate(points):
-        assert same_ball_step(step, right, point, radius, N_BALL, seed=k) > ALPHA
-    assert t2_stationarity(region, step, N_STATIONARITY, seed=5) > ALPHA
-    assert t3_reversibility(region, step, N_REVERSIBILITY, seed=6) > ALPHA
+        assert same_ball_step(step, right, point, radius, N_LAW, seed=k) > ALPHA
+    assert t2_stationarity(region, step, N_LAW, seed=5) > ALPHA
+    assert t3_reversibility(region, step, N_LAW, seed=6) > ALPHA
 
 
 @EACH_WALK
 def test_a_walk_keeps_the_uniform_law(gate_set, walk):
     """T2."""
     step = step_of(walk, gate_set.space)
-    assert t2_stationarity(gate_set.region, step, N_STATIONARITY, seed=5) > ALPHA
+    assert t2_stationarity(gate_set.region, step, N_LAW, seed=5) > ALPHA
 
 
 @EACH_WALK
 def test_a_walk_is_reversible(gate_set, walk):
     """T3."""
     step = step_of(walk, gate_set.space)
-    assert t3_reversibility(gate_set.region, step, N_REVERSIBILITY, seed=6) > ALPHA
+    assert t3_reversibility(gate_set.region, step, N_LAW, seed=6) > ALPHA
 
 
 @pytest.mark.parametrize('walk', ['hit_and_run', 'coordinate_hit_and_run'])
 def test_draws_are_uniform_in_the_end(gate_set, walk):
-    """The last points of many chains of 200 steps from one point."""
+    """The last points of many chains from one point."""
     region, space, points = gate_set
-    draws = sample(space, points[0], 1, walk=walk, n_chains=N_CHAINS, burn_in=199, seed=7)[:, 0]
+    rng = np.random.default_rng(7)
+    draws = step_of(walk, space, N_STEPS)(np.tile(points[0], (N_CHAINS, 1)), rng)
     assert space.contains(draws).all()
-    others = region.uniform(N_STATIONARITY, np.random.default_rng(8))
+    others = region.uniform(N_LAW, np.random.default_rng(8))
     assert same_law(region.cell_of(draws), region.cell_of(others)) > ALPHA
 
 
 @pytest.mark.parametrize('name', ['u shape', 'two rooms'])
 def test_draws_are_uniform_on_a_turned_map(name):
-    """The same in metres, in the frame of the map."""
+    """The same of ``sample``, in metres, in the frame of the map."""
     region, _, points = SETS[name]()
     resolution, x, y, yaw = 0.05, 3.0, -2.0, 0.7
     turned = GridSpace.from_blocked(region.occupied, resolution, (x, y, yaw))
     turn = np.exp(1j * yaw) * resolution
     start = (points[0] @ [1, 1j]) * turn + complex(x, y)
-    draws = sample(turned, (start.real, start.imag), 1, n_chains=N_CHAINS, burn_in=199, seed=7)[
-        :, 0
-    ]
+    steps = N_STEPS - 1  # before the one draw, which is a step as well
+    ends = sample(turned, (start.real, start.imag), 1, n_chains=N_CHAINS, burn_in=steps, seed=7)
+    draws = ends[:, 0]
     assert turned.contains(draws).all()
     z = (draws @ [1, 1j] - complex(x, y)) / turn
     cells = region.cell_of(np.stack([z.real, z.imag], axis=1))
-    others = region.cell_of(region.uniform(N_STATIONARITY, np.random.default_rng(8)))
+    others = region.cell_of(region.uniform(N_LAW, np.random.default_rng(8)))
     assert same_law(cells, others) > ALPHA

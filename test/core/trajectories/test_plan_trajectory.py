@@ -214,6 +214,7 @@ def test_reprs_say_what_was_found() -> None:
 
 # -- bad input
 
+TREE_OF_A_CAR = {'system': CAR, 'algorithm': 'kinodynamic_rrt', 'goal_radius': 1.0}
 BAD: dict[str, tuple[dict[str, Any], str]] = {
     'speed': ({'start': state(1.0, 1.0, 2.0, 1.0)}, 'start must be no faster than max_speed'),
     'no velocity': ({'start': START[:2]}, 'start must have shape'),
@@ -233,13 +234,13 @@ BAD: dict[str, tuple[dict[str, Any], str]] = {
     'algorithm': ({'algorithm': 'rrt'}, 'algorithm must be one of auto, kinodynamic_connect'),
     'alternatives': ({'alternatives': 2}, 'plan_trajectory takes no alternatives'),
     'clearance': ({'clearance': 0.5}, 'plan_trajectory takes no clearance'),
-    'simplify a car': ({'system': CAR, 'simplify': True, 'goal_radius': 1.0}, 'for a Car: only'),
+    'simplify a car': ({**TREE_OF_A_CAR, 'simplify': True}, 'for a Car: only'),
     'optimize a car': (
-        {'system': CAR, 'optimize_for': 0.1, 'goal_radius': 1.0},
+        {**TREE_OF_A_CAR, 'optimize_for': 0.1},
         'optimize_for must be 0 for a Car',
     ),
     'optimize a car again': (
-        {'system': CAR, 'optimize_iterations': 1, 'goal_radius': 1.0},
+        {**TREE_OF_A_CAR, 'optimize_iterations': 1},
         'optimize_iterations must be 0 for a Car',
     ),
     'optimize what is raw': (

@@ -139,6 +139,6 @@ def test_a_start_in_motion_is_braked_or_turned_away() -> None:
         assert (result.counts['braking_steps'] > 0) == turns
 
 
-def test_auto_is_the_hybrid_or_for_a_car_a_tree() -> None:
+def test_auto_is_the_hybrid_or_for_a_car_that_may_hit_the_wall_a_tree() -> None:
     assert solve('auto').planner == 'kinodynamic_connect'
-    assert solve('auto', CAR).planner == 'kinodynamic_rrt'
+    assert solve('auto', CAR, boundary='inelastic').planner == 'kinodynamic_rrt'

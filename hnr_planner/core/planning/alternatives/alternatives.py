@@ -4,11 +4,12 @@ Find alternative paths, none of which can be deformed into another past an obsta
 Searches from the start over uniform points to the goal explore the whole component, through narrow
 doors too. Their paths and further uniform points make a graph of points with free segments between
 them. In it the shortest paths of different homology classes are found, and each is shortened
-within its class.
+within its class; on a grid to the shortest path that it can be deformed into, exactly.
 """
 
 from dataclasses import replace
 from itertools import pairwise
+from typing import NamedTuple
 
 from hnr_planner.core.checks import check_count, Floats
 from hnr_planner.core.errors import RequestError
@@ -24,7 +25,8 @@ from hnr_planner.core.planning.alternatives.class_graph import (
     shortest_classes,
     START,
 )
-from hnr_planner.core.planning.homology import islands_at, signature
+from hnr_planner.core.planning.alternatives.sleeve import shortest_in_class
+from hnr_planner.core.planning.homology import Islands, islands_at, signature
 from hnr_planner.core.planning.limits import Budget, run
 from hnr_planner.core.planning.planner import Work
 from hnr_planner.core.planning.planners.auto import Auto
@@ -32,7 +34,8 @@ from hnr_planner.core.planning.planners.rrt import draw_in_box
 from hnr_planner.core.planning.postprocessing.clearance import increase_clearance
 from hnr_planner.core.planning.postprocessing.simplify import shorten, skip_vertices
 from hnr_planner.core.planning.request import Request
-from hnr_planner.core.planning.result import PlannerStatus, PlanResult
+from hnr_planner.core.planning.result import PlannerStatus, PlanResult, proof
+from hnr_planner.core.spaces.grid.grid_space import GridSpace
 from hnr_planner.core.spaces.primitives import component
 from hnr_planner.core.spaces.space import Space
 import numpy as np
@@ -78,13 +81,13 @@ def with_alternatives(
     ``result`` is the result of ``plan`` with one path. ``began`` is the time at which the call
     began, on the clock of ``working_time`` [s].
     """
-    paths, more_work = _find(request, result.path, n_paths, budget)
+    paths, are_shortest, more_work = _find(request, result.path, n_paths, budget)
     work = Work(result.iterations, result.counts).plus(more_work)
     lengths = ', '.join(f'{path_length(path):.6g}' for path in paths)
     return replace(
         result,
         message=f'{len(paths)} of {n_paths} paths, of {lengths} m, after {work.iterations} '
-        'transitions',
+        f'transitions{_what_is_proved(request, result, paths, are_shortest)}',
         path=paths[0],
         others=tuple(paths[1:]),
         length=path_length(paths[0]),
@@ -97,20 +100,21 @@ def with_alternatives(
 
 def _find(
     request: Request, path: Floats, n_paths: int, budget: Budget
-) -> tuple[list[Floats], Work]:
+) -> tuple[list[Floats], bool, Work]:
     """
     Find the shortest paths of up to ``n_paths`` homology classes with the ends of ``path`` (m, 2).
 
     ``path`` is in the caller's frame and takes part for its class, unless a shorter one is found
     in that class. A limit of the budget ends the search early, with the paths found so far.
-    Returns the paths, caller's frame, the shortest first, and the work of all searches.
+    Returns the paths, caller's frame, the shortest first; whether each is the shortest of those
+    that it can be deformed into; and the work of all searches.
     """
     space = request.space
     if np.array_equal(path[0], path[-1]):
-        return [path], Work(0, {})
+        return [path], False, Work(0, {})
     islands = islands_at(np.asarray(space.island_points))
     graph, work = _explore(request, path, budget)
-    shortest = {signature(islands, space.to_kernel(path)): path}
+    shortest = {signature(islands, space.to_kernel(path)): _taut(request, path)}
     found = (
         shortest_classes(graph, islands, CLASSES_PER_PATH * n_paths)
         if budget.stop() is None
@@ -121,15 +125,73 @@ def _find(
         rough[0], rough[-1] = path[0], path[-1]
         if budget.stop() is not None or not space.is_path_free(rough):
             continue
-        rng = request.stream(number, EXPLORE, 0)
-        shortened = shorten(space, rough, rng, budget, islands=islands)
-        if request.clearance > 0.0:
-            shortened = increase_clearance(space, shortened, request.clearance, budget, islands)
-        points = space.to_kernel(shortened)
+        shortened = _shortened(request, rough, number, islands, budget)
+        points = space.to_kernel(shortened.path)
         if is_simple(points):
             among = signature(islands, points)
-            shortest[among] = min(shortest.get(among, shortened), shortened, key=path_length)
-    return sorted(shortest.values(), key=path_length)[:n_paths], work
+            shortest[among] = min(shortest.get(among, shortened), shortened, key=_length)
+    kept = sorted(shortest.values(), key=_length)[:n_paths]
+    return [each.path for each in kept], all(each.is_shortest for each in kept), work
+
+
+class _Found(NamedTuple):
+    """A path (m, 2), caller's frame, and whether it can be deformed into no shorter one."""
+
+    path: Floats
+    is_shortest: bool
+
+
+def _length(found: _Found) -> float:
+    return float(path_length(found.path))
+
+
+def _taut(request: Request, path: Floats) -> _Found:
+    """Return the first path (m, 2), on a grid without a clearance the shortest of its class."""
+    shortest = None if request.clearance > 0.0 else _shortest_in_class(request, path)
+    return _Found(path, False) if shortest is None else _Found(shortest, True)
+
+
+def _shortened(
+    request: Request, path: Floats, number: int, islands: Islands, budget: Budget
+) -> _Found:
+    """
+    Return a path (m, 2) shortened within its class, and moved away from walls as requested.
+
+    ``number`` selects the random stream for spaces other than grids.
+    """
+    shorter, is_shortest = _shortest_in_class(request, path), True
+    if shorter is None:
+        rng, is_shortest = request.stream(number, EXPLORE, 0), False
+        shorter = shorten(request.space, path, rng, budget, islands=islands)
+    if request.clearance > 0.0:
+        clearance, is_shortest = request.clearance, False
+        shorter = increase_clearance(request.space, shorter, clearance, budget, islands)
+    return _Found(shorter, is_shortest)
+
+
+def _shortest_in_class(request: Request, path: Floats) -> Floats | None:
+    """
+    Return the shortest path (k, 2) that a free path (m, 2) of a grid can be deformed into.
+
+    Both are in the caller's frame. None where the space is no grid, or the caller's coordinates
+    round the path into an obstacle.
+    """
+    space = request.space
+    if not isinstance(space, GridSpace):
+        return None
+    points, _ = shortest_in_class(space.data, space.slabs, space.to_kernel(path), space.margin)
+    shortest = space.from_kernel(points)
+    shortest[:1], shortest[-1:] = path[0], path[-1]
+    return shortest if len(shortest) > 0 and space.is_path_free(shortest) else None
+
+
+def _what_is_proved(
+    request: Request, result: PlanResult, paths: list[Floats], are_shortest: bool
+) -> str:
+    """Return what is proved of the lengths of ``paths``, the shortest first, for a message."""
+    of_first = proof(path_length(paths[0]), result.lower_bound, request.straight_length)
+    each = ', each the shortest that it can be deformed into' if are_shortest else ''
+    return each + of_first.replace(', ', ', the first ', 1)
 
 
 def _explore(request: Request, path: Floats, budget: Budget) -> tuple[ClassGraph, Work]:

@@ -126,7 +126,8 @@ def go_on(problem, slabs, ends, most, frontier, progress, n):
         progress.iterations[i] += used
         status = ITERATION_LIMIT
         if frontier.sizes[FINAL] != NONE:
-            path, first = taut_path(one, slabs, frontier), sizes[N_POINTS]
+            last = frontier.sizes[FINAL]
+            path, first = taut_path(one, slabs.steps, frontier.vertices, last), sizes[N_POINTS]
             last = first + len(path)
             if last > len(progress.points):
                 return FEW_POINTS

@@ -14,32 +14,58 @@ from hnr_planner.core.planning.planners.cones import (
     AT_ONCE,
     CORNER,
     DISTANCE,
+    empty_frontier,
     is_over,
     LEFT_X,
     LEFT_Y,
     length_of,
     N_NODES,
-    N_OPEN,
     N_VERTICES,
     NONE,
-    pop,
+    open_frontier,
     PORTAL,
-    push,
     push_new,
     reach_disc,
     RIGHT_X,
     RIGHT_Y,
     ROOT,
+    side_of,
     UP,
     X,
     Y,
 )
-from hnr_planner.core.planning.planners.target import holds_target
+from hnr_planner.core.planning.planners.heap import add_open, close_hole, N_OPEN, take_first
+from hnr_planner.core.planning.planners.target import holds_target, make_target
 from hnr_planner.core.spaces.grid.slabs import LEFT, RIGHT
 import numpy as np
 
 #: Ratio of the length of a path to that of another below which the former counts as shorter.
 NEARER = 1.0 - 1e-13
+
+
+@kernel
+def begin(slabs, start, goal, radius, margin, rows, n_iterations):
+    """
+    Begin a search and expand its first nodes; return (frontier, target, number of expansions).
+
+    Parameters
+    ----------
+    slabs : Slabs
+        The slabs of the grid.
+    start, goal : (2,)
+        Start, and goal or centre of the goal region, kernel frame.
+    radius, margin : float
+        Radius of the goal region, 0 for none, and margin of the space [cells].
+    rows : int
+        Rows of the arrays of the frontier.
+    n_iterations : int
+        Largest number of expansions.
+
+    """
+    target = make_target(slabs, goal, radius, margin)
+    frontier = empty_frontier(slabs, rows)
+    open_frontier(slabs, frontier, start, target)
+    return frontier, target, expand(slabs, frontier, target, n_iterations)
 
 
 @kernel
@@ -59,14 +85,15 @@ def expand(slabs, frontier, target, n_iterations):
         rows = max(sizes[N_NODES], sizes[N_VERTICES], sizes[N_OPEN]) + sizes[AT_ONCE]
         if rows > len(frontier.nodes):
             return i
-        row = frontier.heap[0]
-        pop(frontier)
+        row = take_first(frontier)
         root = int(frontier.nodes[row, ROOT])
         corner = int(vertices[root, CORNER])
         if corner != NONE and vertices[root, DISTANCE] > frontier.nearest[corner]:
+            close_hole(frontier)
             continue
         while _replace_node(slabs, frontier, target, row):
             pass
+        close_hole(frontier)
     is_over(frontier)
     return n_iterations
 
@@ -114,14 +141,14 @@ def _expand_ahead(slabs, frontier, row, first, last):
     )
     for k in range(first, last):
         left, right, line = slabs.portals[k, 0], slabs.portals[k, 1], slabs.portals[k, 2]
-        if up * _side_of(x, y, lx, ly, right, line) > 0.0:
+        if up * side_of(x, y, lx, ly, right, line) > 0.0:
             continue
-        if up * _side_of(x, y, rx, ry, left, line) < 0.0:
+        if up * side_of(x, y, rx, ry, left, line) < 0.0:
             break
         a, b, c, d = lx, ly, rx, ry
-        if up * _side_of(x, y, lx, ly, left, line) <= 0.0:
+        if up * side_of(x, y, lx, ly, left, line) <= 0.0:
             a, b = left, line
-        if up * _side_of(x, y, rx, ry, right, line) >= 0.0:
+        if up * side_of(x, y, rx, ry, right, line) >= 0.0:
             c, d = right, line
         add_node(slabs, frontier, root, a, b, c, d, k, up)
 
@@ -147,9 +174,9 @@ def _expand_around(slabs, frontier, target, row, side, slab, holds):
         return
     outwards = up if side == LEFT else -up  # the sign of what lies beyond the bound
     if slab == target.slab:
-        if outwards * _side_of(x, y, cx, cy, target.x, target.y) > 0.0:
+        if outwards * side_of(x, y, cx, cy, target.x, target.y) > 0.0:
             rest = length_of(target.x - cx, target.y - cy)
-            push(frontier, vertices[vertex, DISTANCE] + rest, NONE - vertex)
+            add_open(frontier, vertices[vertex, DISTANCE] + rest, NONE - vertex)
         return
     if holds:
         reach_disc(slabs, frontier, target, vertex, slab, np.empty((0, 4)))
@@ -157,10 +184,10 @@ def _expand_around(slabs, frontier, target, row, side, slab, holds):
     for k in range(ahead[slab, 0], ahead[slab, 1]):
         line = slabs.portals[k, 2]
         outer, inner = slabs.portals[k, side], slabs.portals[k, 1 - side]
-        if outwards * _side_of(x, y, cx, cy, outer, line) <= 0.0:
+        if outwards * side_of(x, y, cx, cy, outer, line) <= 0.0:
             continue
         ix, iy = float(inner), float(line)
-        if outwards * _side_of(x, y, cx, cy, inner, line) < 0.0:
+        if outwards * side_of(x, y, cx, cy, inner, line) < 0.0:
             ix, iy = 2.0 * cx - x, 2.0 * cy - y
         if side == LEFT:
             add_node(slabs, frontier, vertex, outer, line, ix, iy, k, up)
@@ -192,11 +219,11 @@ def _reach_target(slabs, frontier, target, row, slab):
         away[0], away[1], away[2], away[3] = (x, y, rx, ry) if up == 1 else (x, y, lx, ly)
         reach_disc(slabs, frontier, target, root, slab, bounds)
         return
-    left = up * _side_of(x, y, lx, ly, target.x, target.y)
-    right = up * _side_of(x, y, rx, ry, target.x, target.y)
+    left = up * side_of(x, y, lx, ly, target.x, target.y)
+    right = up * side_of(x, y, rx, ry, target.x, target.y)
     if left <= 0.0 <= right:
         rest = length_of(target.x - x, target.y - y)
-        push(frontier, vertices[root, DISTANCE] + rest, NONE - root)
+        add_open(frontier, vertices[root, DISTANCE] + rest, NONE - root)
 
 
 @inlined
@@ -212,9 +239,3 @@ def _reach_corner(frontier, root, x, y, corner):
         return NONE
     frontier.nearest[corner] = distance
     return add_vertex(frontier, x, y, distance, root, corner)
-
-
-@inlined
-def _side_of(ax, ay, bx, by, px, py):
-    """Return a number > 0 where ``p`` is left of the line from ``a`` to ``b``, < 0 right of it."""
-    return (bx - ax) * (py - ay) - (by - ay) * (px - ax)

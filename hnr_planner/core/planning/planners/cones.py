@@ -1,5 +1,5 @@
 """
-Cones: the search nodes of ``polyanya``, and the heap of those that are open.
+Cones: the search nodes of ``polyanya``, and the state of its search.
 
 Slabs are rectangles of free cells, and portals the intervals along which two slabs meet
 (``spaces.grid.slabs``).
@@ -20,6 +20,7 @@ from hnr_planner.core.checks import Floats
 from hnr_planner.core.kernels.borrowed import borrowed
 from hnr_planner.core.kernels.kernel import inlined, kernel
 from hnr_planner.core.planning.planner import with_capacity
+from hnr_planner.core.planning.planners.heap import add_open, HAS_HOLE, N_OPEN
 from hnr_planner.core.planning.planners.target import holds_target, nearest_of_disc, off_line
 from hnr_planner.core.spaces.grid.slabs import slab_at, THROUGH
 import numpy as np
@@ -33,9 +34,9 @@ ROOT, LEFT_X, LEFT_Y, RIGHT_X, RIGHT_Y, PORTAL, UP = range(7)
 #: Columns of a vertex: point, length of the path from the start, row of the vertex before on that
 #: path, number of its corner (2 portal + side).
 X, Y, DISTANCE, PARENT, CORNER = range(5)
-#: Entries of ``Frontier.sizes``: nodes, vertices and open nodes, the row of the last vertex, and
-#: the rows that one expansion may fill.
-N_NODES, N_VERTICES, N_OPEN, FINAL, AT_ONCE = range(5)
+#: Entries of ``Frontier.sizes``, beside those of the heap: nodes and vertices, the row of the last
+#: vertex, and the rows that one expansion may fill.
+N_NODES, N_VERTICES, FINAL, AT_ONCE = 0, 1, 3, 4
 
 
 class Frontier(NamedTuple):
@@ -59,9 +60,10 @@ class Frontier(NamedTuple):
         Length of the shortest path by which each corner has been reached; inf at first.
     is_open : (n_slabs,) bool
         Slabs that a path may pass: all but dead ends that hold neither start nor target.
-    sizes : (5,) int64
+    sizes : (6,) int64
         Numbers of nodes, of vertices and of open nodes; the row of the last vertex of the shortest
-        path, NONE (-1) while the search is not solved; and the rows that one expansion may fill.
+        path, NONE (-1) while the search is not solved; the rows that one expansion may fill; and
+        whether the heap has a hole at its top (``take_first``).
 
     """
 
@@ -74,21 +76,25 @@ class Frontier(NamedTuple):
     sizes: NDArray[np.int64]
 
 
-def empty_frontier(n_portals: int, n_slabs: int, at_once: int, rows: int) -> Frontier:
+@kernel
+def empty_frontier(slabs, rows):
     """
-    Return the state of a search that has no nodes yet, with arrays of at least ``rows`` rows.
+    Return the state of a search among ``slabs`` that has no nodes yet.
 
-    ``at_once`` is the number of rows that one expansion may fill (``rows_at_once``).
+    Its arrays have at least ``rows`` rows, and as many as one expansion may fill.
     """
+    at_once = 3 * slabs.most_portals + 7
     rows = max(rows, at_once)
+    sizes = np.zeros(6, dtype=np.int64)
+    sizes[FINAL], sizes[AT_ONCE] = NONE, at_once
     return Frontier(
         np.empty((rows, 7)),
         np.empty((rows, 5)),
         np.empty(rows),
         np.empty(rows, dtype=np.int64),
-        np.full(2 * n_portals, np.inf),
-        np.empty(n_slabs, dtype=np.bool_),
-        np.array([0, 0, 0, NONE, at_once]),
+        np.full(2 * len(slabs.portals), np.inf),
+        np.empty(len(slabs.boxes), dtype=np.bool_),
+        sizes,
     )
 
 
@@ -117,13 +123,14 @@ def open_frontier(slabs, frontier, start, target):
     for slab in range(len(slabs.exits)):
         frontier.is_open[slab] = slabs.exits[slab] == THROUGH
     sizes[N_NODES], sizes[N_VERTICES], sizes[N_OPEN], sizes[FINAL] = 0, 0, 0, NONE
+    sizes[HAS_HOLE] = 0
     x, y = start[0], off_line(start[1])
     add_vertex(frontier, x, y, 0.0, NONE, NONE)
     slab = slab_at(slabs, x, y)
     _open_exits(slabs, frontier, slab)
     _open_exits_of_target(slabs, frontier, target)
     if slab == target.slab:
-        push(frontier, length_of(target.x - x, target.y - y), NONE)
+        add_open(frontier, length_of(target.x - x, target.y - y), NONE)
         return
     if holds_target(slabs, target, slab):
         reach_disc(slabs, frontier, target, 0, slab, np.empty((0, 4)))
@@ -133,16 +140,6 @@ def open_frontier(slabs, frontier, start, target):
             left, right, line = slabs.portals[k, 0], slabs.portals[k, 1], slabs.portals[k, 2]
             add_node(slabs, frontier, 0, left, line, right, line, k, up)
     push_new(slabs, frontier, target, 0)
-
-
-@kernel
-def rows_at_once(slabs):
-    """Return the rows that the first nodes of a search, or one expansion, fill at most."""
-    most = 0
-    for slab in range(len(slabs.boxes)):
-        above = slabs.above[slab, 1] - slabs.above[slab, 0]
-        most = max(most, int(above + slabs.below[slab, 1] - slabs.below[slab, 0]))
-    return 3 * most + 7
 
 
 @kernel
@@ -179,7 +176,7 @@ def reach_disc(slabs, frontier, target, root, slab, bounds):
     px, py = nearest_of_disc(slabs, target, slab, x, y, bounds)
     if not math.isnan(px):
         length = frontier.vertices[root, DISTANCE] + length_of(px - x, py - y)
-        push(frontier, length, NONE - add_vertex(frontier, px, py, length, root, NONE))
+        add_open(frontier, length, NONE - add_vertex(frontier, px, py, length, root, NONE))
 
 
 @inlined
@@ -226,25 +223,45 @@ def add_node(slabs, frontier, root, lx, ly, rx, ry, portal, up):
 def push_new(slabs, frontier, target, first):
     """Push the nodes from row ``first`` on on the heap, with their estimates."""
     for row in range(first, frontier.sizes[N_NODES]):
-        push(frontier, _estimate(slabs, frontier, target, row), row)
+        add_open(frontier, _estimate(slabs, frontier, target, row), row)
 
 
 @inlined
 def _estimate(slabs, frontier, target, row):
-    """Return a lower bound on the length of paths to the target through the cone of a node."""
+    """
+    Return a lower bound on the length of paths to the target through the cone of a node.
+
+    A target behind the portal's line counts as its mirror image beyond it.
+    """
     node = frontier.nodes[row]
-    vertex, portal = frontier.vertices[int(node[ROOT])], slabs.portals[int(node[PORTAL])]
-    x, y, line = vertex[X], vertex[Y], float(portal[2])
-    left = max(_crossing(x, y, node[LEFT_X], node[LEFT_Y], line), float(portal[0]))
-    right = min(_crossing(x, y, node[RIGHT_X], node[RIGHT_Y], line), float(portal[1]))
-    goal_y = target.y if node[UP] * (target.y - line) > 0.0 else 2.0 * line - target.y
-    at = _crossing(x, y, target.x, goal_y, line) if y != line else x
-    at = min(max(at, left), right)
-    rest = length_of(at - x, line - y) + length_of(target.x - at, goal_y - line)
+    vertex, line = frontier.vertices[int(node[ROOT])], float(slabs.portals[int(node[PORTAL]), 2])
+    x, y, up = vertex[X], vertex[Y], node[UP]
+    lx, ly, rx, ry = node[LEFT_X], node[LEFT_Y], node[RIGHT_X], node[RIGHT_Y]
+    goal_x, goal_y = target.x, target.y
+    if up * (goal_y - line) <= 0.0:
+        goal_y = 2.0 * line - goal_y
+    if y == line:
+        at = min(max(x, lx), rx)
+        rest = abs(at - x) + length_of(goal_x - at, goal_y - line)
+    elif up * side_of(x, y, lx, ly, goal_x, goal_y) > 0.0:
+        at = _crossing(x, y, lx, ly, line)
+        rest = length_of(at - x, line - y) + length_of(goal_x - at, goal_y - line)
+    elif up * side_of(x, y, rx, ry, goal_x, goal_y) < 0.0:
+        at = _crossing(x, y, rx, ry, line)
+        rest = length_of(at - x, line - y) + length_of(goal_x - at, goal_y - line)
+    else:
+        rest = length_of(goal_x - x, goal_y - y)
     if target.radius > 0.0:
+        left, right = _crossing(x, y, lx, ly, line), _crossing(x, y, rx, ry, line)
         near = min(max(x, left), right)
         rest = max(rest - target.radius, length_of(near - x, line - y))
     return vertex[DISTANCE] + rest
+
+
+@inlined
+def side_of(ax, ay, bx, by, px, py):
+    """Return a number > 0 where ``p`` is left of the line from ``a`` to ``b``, < 0 right of it."""
+    return (bx - ax) * (py - ay) - (by - ay) * (px - ax)
 
 
 @inlined
@@ -257,34 +274,3 @@ def length_of(x, y):
 def _crossing(x, y, bx, by, line):
     """Return the x at which the ray from (x, y) through (bx, by) meets the height ``line``."""
     return float(bx) if by == line else x + (bx - x) * (line - y) / (by - y)
-
-
-@inlined
-def push(frontier, estimate, row):
-    """Insert a row in the heap of open nodes, ordered by ``estimate``."""
-    estimates, heap = frontier.estimates, frontier.heap
-    k = frontier.sizes[N_OPEN]
-    frontier.sizes[N_OPEN] += 1
-    while k > 0 and estimates[(k - 1) // 2] > estimate:
-        estimates[k], heap[k] = estimates[(k - 1) // 2], heap[(k - 1) // 2]
-        k = (k - 1) // 2
-    estimates[k], heap[k] = estimate, row
-
-
-@inlined
-def pop(frontier):
-    """Remove the entry of the least estimate from the heap of open nodes."""
-    estimates, heap, sizes = frontier.estimates, frontier.heap, frontier.sizes
-    sizes[N_OPEN] -= 1
-    n = sizes[N_OPEN]
-    estimate, row = estimates[n], heap[n]
-    k = 0
-    while 2 * k + 1 < n:
-        child = 2 * k + 1
-        if child + 1 < n and estimates[child + 1] < estimates[child]:
-            child += 1
-        if estimates[child] >= estimate:
-            break
-        estimates[k], heap[k] = estimates[child], heap[child]
-        k = child
-    estimates[k], heap[k] = estimate, row

@@ -8,9 +8,8 @@ and the least estimate of an open cone is a lower bound on the length of that pa
 Source: Cui, Harabor and Grastien, "Compromise-free pathfinding on a navigation mesh", IJCAI 2017,
 here on the slabs of a grid.
 
-With a goal region it ends at the point
-of the region that is the nearest to the start along free paths; points of the region that are
-nearer than the margin to an obstacle may be left out.
+With a goal region the path ends at the point of the region that is the nearest to the start along
+free paths; points of the region that are nearer than the margin to an obstacle may be left out.
 """
 
 from dataclasses import dataclass, field
@@ -21,24 +20,19 @@ from hnr_planner.core.checks import Floats
 from hnr_planner.core.errors import RequestError
 from hnr_planner.core.kernels.streams import Stream
 from hnr_planner.core.planning.planner import Problem
-from hnr_planner.core.planning.planners.cone_expansion import expand
+from hnr_planner.core.planning.planners.cone_expansion import begin, expand
 from hnr_planner.core.planning.planners.cones import (
-    CORNER,
-    DISTANCE,
-    empty_frontier,
     FINAL,
     Frontier,
     N_NODES,
-    N_OPEN,
     N_VERTICES,
     NONE,
-    open_frontier,
     PARENT,
-    rows_at_once,
     with_more_rows,
 )
-from hnr_planner.core.planning.planners.target import make_target, Target
-from hnr_planner.core.planning.planners.taut_path import taut_path
+from hnr_planner.core.planning.planners.heap import N_OPEN
+from hnr_planner.core.planning.planners.target import Target
+from hnr_planner.core.planning.planners.taut_path import points_reached, taut_path
 from hnr_planner.core.spaces.grid.grid_space import GridSpace
 from hnr_planner.core.spaces.space import Space
 import numpy as np
@@ -99,18 +93,18 @@ class PolyanyaSearch:
     space: GridSpace
     iterations: int = field(init=False, default=0)
     taut: ClassVar[bool] = True
-    _frontier: Frontier = field(init=False)
+    #: State and target of the search; None until the first ``advance``.
+    _frontier: Frontier | None = field(init=False, default=None)
     _target: Target | None = field(init=False, default=None)
-
-    def __post_init__(self) -> None:
-        self._frontier = empty_frontier(0, 0, 1, 1)
-        self._frontier.vertices[0] = *self.problem.start, 0.0, NONE, NONE
-        self._frontier.sizes[N_VERTICES] = 1
+    #: The lower bound after the last expansions that were not interrupted.
+    _bound: float | None = field(init=False, default=None)
+    #: Least number of rows that the next expansions need.
+    _rows: int = field(init=False, default=0)
 
     @property
     def solved(self) -> bool:
         """Whether the shortest path is found."""
-        return bool(self._frontier.sizes[FINAL] != NONE)
+        return self._frontier is not None and bool(self._frontier.sizes[FINAL] != NONE)
 
     @property
     def lower_bound(self) -> float:
@@ -119,12 +113,10 @@ class PolyanyaSearch:
 
         It is the least length itself once the search is solved, and inf where no path exists.
         """
-        if self._target is None:
+        if self._bound is None:
             problem = self.problem
             return max(math.dist(problem.start, problem.goal) - problem.goal_radius, 0.0)
-        if self._frontier.sizes[N_OPEN] == 0:
-            return math.inf
-        return float(self._frontier.estimates[0])
+        return self._bound
 
     @property
     def samples(self) -> Floats:
@@ -133,14 +125,11 @@ class PolyanyaSearch:
 
         A corner is there again where a shorter path to it was found later.
         """
-        vertices = self._frontier.vertices[: self._frontier.sizes[N_VERTICES]]
-        points, corners = vertices[:, :DISTANCE].copy(), vertices[:, CORNER].astype(np.int64)
-        at_corners = np.flatnonzero(corners != NONE)
-        if len(at_corners) > 0:  # there are slabs by then, which take time to make
-            steps = self.space.slabs.steps.reshape(-1, 2)[corners[at_corners]]
-            points[at_corners] += self.problem.margin * steps
-        points[0] = self.problem.start
-        return points
+        problem = self.problem
+        if self._frontier is None:
+            return problem.start[np.newaxis]
+        steps = self.space.slabs.steps
+        return points_reached(steps, self._vertices, problem.start, problem.margin)
 
     @property
     def parents(self) -> NDArray[np.int64]:
@@ -150,38 +139,44 @@ class PolyanyaSearch:
         The point before a sample is the last bend of the shortest path found from the start to
         that sample.
         """
-        rows = self._frontier.vertices[: self._frontier.sizes[N_VERTICES], PARENT]
-        return rows.astype(np.int64)
+        if self._frontier is None:
+            return np.array([NONE])
+        return self._vertices[:, PARENT].astype(np.int64)
+
+    @property
+    def _vertices(self) -> Floats:
+        """Vertices (k, 5) of the search (``Frontier``)."""
+        if self._frontier is None:
+            return np.empty((0, 5))
+        return self._frontier.vertices[: self._frontier.sizes[N_VERTICES]]
 
     @property
     def counts(self) -> dict[str, int]:
         """Further counts by name: ``cones``, the number of search nodes made."""
-        return {'cones': int(self._frontier.sizes[N_NODES])}
+        return {'cones': 0 if self._frontier is None else int(self._frontier.sizes[N_NODES])}
 
     @property
     def path(self) -> Floats:
         """Path (m, 2) of a solved search, kernel frame, at the margin from the corners passed."""
-        return taut_path(self.problem, self.space.slabs, self._frontier)
+        last = NONE if self._frontier is None else int(self._frontier.sizes[FINAL])
+        return taut_path(self.problem, self.space.slabs.steps, self._vertices, last)
 
     def advance(self, n_iterations: int) -> None:
         """Expand at most ``n_iterations`` cones, fewer once solved or when no cone is left."""
-        if self._target is None:
-            self._target = self._open()
-        end = self.iterations + n_iterations
-        while self.iterations < end and not self.solved:
-            left = end - self.iterations
-            self.iterations += expand(self.space.slabs, self._frontier, self._target, left)
-            exhausted = self._frontier.sizes[N_OPEN] == 0
-            if self.solved or exhausted or self.iterations == end:
-                break
-            self._frontier = with_more_rows(self._frontier, len(self._frontier.nodes) + 1)
-
-    def _open(self) -> Target:
-        """Make the first cones; return the target of the search."""
         slabs, problem = self.space.slabs, self.problem
-        target = make_target(slabs, problem.goal, problem.goal_radius, problem.margin)
-        sizes = len(slabs.portals), len(slabs.boxes), rows_at_once(slabs)
-        frontier = empty_frontier(*sizes, INITIAL_CAPACITY)
-        open_frontier(slabs, frontier, problem.start, target)
-        self._frontier = frontier  # only now: a limit may interrupt the lines above
-        return target
+        end, is_over = self.iterations + n_iterations, False
+        while not is_over:
+            left = end - self.iterations
+            if self._frontier is None:
+                ends = problem.start, problem.goal, problem.goal_radius
+                self._frontier, self._target, expanded = begin(
+                    slabs, *ends, problem.margin, INITIAL_CAPACITY, left
+                )
+            else:
+                self._frontier = with_more_rows(self._frontier, self._rows)
+                expanded = expand(slabs, self._frontier, self._target, left)
+            self.iterations += expanded
+            is_open = bool(self._frontier.sizes[N_OPEN] > 0)
+            self._bound = float(self._frontier.estimates[0]) if is_open else math.inf
+            is_over = self.solved or not is_open or self.iterations == end
+            self._rows = len(self._frontier.nodes) + (0 if is_over else 1)

@@ -23,6 +23,7 @@ from hnr_planner.core.planning.poses.reeds_shepp import (
 from hnr_planner.core.spaces.poses.data import first_contact_of
 from hnr_planner.core.spaces.poses.drive import CAR, DIFFERENTIAL
 from hnr_planner.core.spaces.poses.motion import moved, wrapped
+from hnr_planner.core.spaces.poses.overlap import overlaps
 import numpy as np
 from numpy.typing import NDArray
 
@@ -30,6 +31,9 @@ from numpy.typing import NDArray
 N_MOTIONS, N_KEPT = 5, 4
 #: Length [cells] and angle [rad] below which a motion is left out.
 TINY = 1e-9
+#: Distance between the poses of a motion that are tested first, in strides.
+PROBE = 1.0
+GOLDEN = (math.sqrt(5.0) - 1.0) / 2.0
 
 
 class Prices(NamedTuple):
@@ -133,14 +137,21 @@ def connect(space, prices, a, b, driven, found):
         _connect_car(space, prices, x, y, turn, driven, found)
     elif space.drive == DIFFERENTIAL:
         _connect_differential(space, prices, x, y, turn, driven, found)
+        _connect_car(space, prices, x, y, turn, driven, found)
     else:
         _connect_omnidirectional(prices, x, y, turn, found)
+
+
+@inlined
+def arc_curvature(space):
+    """Return the curvature [1 / cells] of the arcs that connections are made of."""
+    return space.max_curvature if space.drive == CAR else 1.0 / space.reach
 
 
 @kernel
 def _connect_car(space, prices, x, y, turn, driven, found):
     """Keep the cheapest words from (0, 0, 0) to (x, y, turn)."""
-    curvature = space.max_curvature
+    curvature = arc_curvature(space)
     forwards = not space.reverse
     # What is driven ahead on the way back is driven backwards on the way there: a car that is
     # turned round drives it ahead.
@@ -241,6 +252,37 @@ def _keep(prices, size, driven, found):
     for m in range(size):
         for i in range(3):
             twists[k, m, i] = twists[N_KEPT, m, i]
+
+
+@kernel
+def is_seen_blocked(space, a, twists, n):
+    """
+    Return whether the first n motions of ``twists`` from pose ``a`` (3,) pass a blocked pose.
+
+    A few poses are tested, no more than ``PROBE`` strides apart: that costs far less than the
+    exact test of the motions, and finds most of those that are blocked.
+    """
+    x, y, yaw = a[0], a[1], a[2]
+    for k in range(n):
+        vx, vy, omega = twists[k, 0], twists[k, 1], twists[k, 2]
+        length = math.hypot(vx, vy) + abs(omega) * space.reach
+        # Multiples of the golden ratio spread evenly from the first of them on.
+        share = 1.0
+        for _ in range(1 + math.floor(length / (PROBE * space.stride))):
+            at_x, at_y, at_yaw = moved(x, y, yaw, vx, vy, omega, share)
+            if overlaps(
+                space.free_distance,
+                space.pieces,
+                space.piece_ends,
+                space.circle,
+                at_x,
+                at_y,
+                at_yaw,
+            ):
+                return True
+            share = (share + GOLDEN) % 1.0
+        x, y, yaw = moved(x, y, yaw, vx, vy, omega, 1.0)
+    return False
 
 
 @kernel

@@ -8,7 +8,7 @@ import math
 
 from hnr_planner.core.checks import Floats
 from hnr_planner.core.kernels.kernel import kernel
-from hnr_planner.core.kernels.streams import normal, Stream, uniform
+from hnr_planner.core.kernels.streams import normal, Stream, stream, uniform
 from hnr_planner.core.planning.limits import Budget, run
 from hnr_planner.core.planning.planner import make_problem
 from hnr_planner.core.planning.planners.polyanya import Polyanya
@@ -18,16 +18,19 @@ from hnr_planner.core.spaces.poses.motion import wrapped
 from hnr_planner.core.spaces.primitives import contains
 import numpy as np
 
-#: Standard deviations of a pose along the guide: of its place, as a fraction of the footprint's
-#: reach, at the last of the draws and in proportion before, and of its heading [rad].
+#: Standard deviations of a pose along the guide: of its place, in strides of the
+#: robot, at the last of the draws and in proportion before, and of its heading [rad].
 SPREAD, SPREAD_YAW = 1.0, 0.3
-#: How far before and behind a point of the guide its heading is taken, in reaches.
+#: How far before and behind a point of the guide its heading is taken, in strides.
 LOOK = 0.5
 #: Largest number of draws of a pose along the guide until one is free.
 N_DRAWS = 12
-#: Probability that such a pose is near the farthest that its tree has reached, and how near, in
-#: reaches of the footprint.
-NEARBY, AHEAD = 0.8, 12.0
+#: Side of the square in which the place of a detour is drawn, in two strides, and the largest
+#: number of places until a guide goes round.
+DETOUR, N_PLACES = 8.0, 20
+#: Probability that such a pose is near the farthest that its tree has reached, and how far behind
+#: that, as a fraction of the distance ahead.
+NEARBY, BEHIND = 0.8, 0.5
 
 
 def shortest_guide(disc: Disc, start: Floats, goal: Floats, rng: Stream, budget: Budget) -> Floats:
@@ -41,13 +44,77 @@ def shortest_guide(disc: Disc, start: Floats, goal: Floats, rng: Stream, budget:
         budget is met first.
 
     """
-    problem = make_problem(disc.space, disc.place(start), disc.place(goal), 0.0)
+    return _joined(_shortest(disc, disc.place(start), disc.place(goal), rng, budget))
+
+
+def detour_guide(
+    disc: Disc,
+    start: Floats,
+    goal: Floats,
+    stuck: Floats,
+    stride: float,
+    budget: Budget,
+    seed: int,
+) -> Floats:
+    """
+    Return a guide between two poses (3,) by way of a random place near where a search is stuck.
+
+    Where the shortest path of the disc leads through a place that is too tight for the footprint,
+    the way round leads by another place near there, and not through that one if there is a choice.
+
+    Parameters
+    ----------
+    disc, start, goal, budget
+        Those of ``shortest_guide``.
+    stuck : (2,)
+        Where the search got stuck, kernel frame [cells].
+    stride : float
+        Length of a short manoeuvre [cells].
+    seed : int
+        Seed of the random place.
+
+    """
+    rng, points = np.random.default_rng(seed), np.empty((0, 2))
+    begin, end = disc.place(start), disc.place(goal)
+    for _ in range(N_PLACES):
+        place = disc.space.from_kernel(stuck + DETOUR * stride * rng.uniform(-1.0, 1.0, 2))
+        if not disc.space.connected(begin, place):
+            continue
+        legs = (begin, place), (place, end)
+        points = np.vstack([_shortest(disc, *leg, stream(seed), budget) for leg in legs])
+        if _distance(points, stuck) > stride:
+            break
+    return _joined(points)
+
+
+def _distance(points: Floats, place: Floats) -> float:
+    """Return the distance of a place (2,) from the path along points (k, 2); inf for no path."""
+    if len(points) < 2:
+        return math.inf
+    steps, away = np.diff(points, axis=0), place - points[:-1]
+    squared = np.maximum((steps**2).sum(axis=1), np.finfo(float).tiny)
+    shares = np.clip((steps * away).sum(axis=1) / squared, 0.0, 1.0)
+    return float(np.hypot(*(shares[:, np.newaxis] * steps - away).T).min())
+
+
+def _shortest(disc: Disc, begin: Floats, end: Floats, rng: Stream, budget: Budget) -> Floats:
+    """Return the shortest path (k, 2) of the disc, kernel frame; (0, 2) where it is not found."""
+    problem = make_problem(disc.space, begin, end, 0.0)
     search = Polyanya().for_space(disc.space).start(problem, rng)
     if run(search, budget) is not PlannerStatus.SOLVED:
-        return np.empty((0, 3))
-    points = search.path
+        return np.empty((0, 2))
+    return search.path
+
+
+def _joined(points: Floats) -> Floats:
+    """Return the guide (k, 3) along points (k, 2)."""
     lengths = np.hypot(*np.diff(points, axis=0).T)
-    return np.column_stack([points, np.append(0.0, np.cumsum(lengths))])
+    return np.column_stack([points, np.append(0.0, np.cumsum(lengths))[: len(points)]])
+
+
+def point_of_guide(guide: Floats, along: float) -> Floats:
+    """Return the point (2,) of a guide (k, 3) after a length [cells], kernel frame."""
+    return np.array([np.interp(along, guide[:, 2], guide[:, axis]) for axis in range(2)])
 
 
 @kernel
@@ -59,18 +126,19 @@ def draw_along_guide(problem, trees, tree, rng):
     drawn again, up to ``N_DRAWS`` times, until it is free.
     """
     guide, pose = problem.guide, trees.work[0]
-    total, reach = guide[len(guide) - 1, 2], problem.space.reach
+    total, stride = guide[len(guide) - 1, 2], problem.space.stride
     low, high = 0.0, total
     if uniform(rng) < NEARBY:
-        low = max(trees.progress[tree] - AHEAD * reach, 0.0)
-        high = min(trees.progress[tree] + AHEAD * reach, total)
+        way = trees.ahead[tree] if tree == 0 else -trees.ahead[tree]
+        low = min(max(trees.progress[tree] - BEHIND * way, 0.0), total)
+        high = min(max(trees.progress[tree] + way, 0.0), total)
     along = low
     for draw in range(N_DRAWS):
         along = low + (high - low) * uniform(rng)
         x, y = _point_of_guide(problem, along)
-        before_x, before_y = _point_of_guide(problem, along - LOOK * reach)
-        after_x, after_y = _point_of_guide(problem, along + LOOK * reach)
-        spread = SPREAD * reach * (draw + 1) / N_DRAWS
+        before_x, before_y = _point_of_guide(problem, along - LOOK * stride)
+        after_x, after_y = _point_of_guide(problem, along + LOOK * stride)
+        spread = SPREAD * stride * (draw + 1) / N_DRAWS
         yaw = math.atan2(after_y - before_y, after_x - before_x) + SPREAD_YAW * normal(rng)
         cos, sin = math.cos(yaw), math.sin(yaw)
         pose[0] = x + spread * normal(rng) - cos * problem.disc[0] + sin * problem.disc[1]
@@ -87,7 +155,7 @@ def _point_of_guide(problem, along):
     Return the point (x, y) of the guide after a length, moved away from walls.
 
     A shortest path passes corners as closely as it can. Its points climb the distance to blocked
-    cells, cell by cell, up to the footprint's reach: in a door to the middle.
+    cells, cell by cell, up to a stride: in a door to the middle.
     """
     guide, distance = problem.guide, problem.space.free_distance
     k = 1
@@ -100,7 +168,7 @@ def _point_of_guide(problem, along):
     y = guide[k - 1, 1] + share * (guide[k, 1] - guide[k - 1, 1])
     column, row = math.floor(x), math.floor(y)
     here = int(distance[row, column])
-    while here < problem.space.reach:
+    while here < problem.space.stride:
         best, step_x, step_y = here, 0, 0
         for dy in range(-1, 2):
             for dx in range(-1, 2):

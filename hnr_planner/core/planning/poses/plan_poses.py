@@ -18,7 +18,7 @@ from hnr_planner.core.planning.poses.connections import (
     empty_connections,
     first_blocked_motion,
 )
-from hnr_planner.core.planning.poses.guide import shortest_guide
+from hnr_planner.core.planning.poses.guide import detour_guide, shortest_guide
 from hnr_planner.core.planning.poses.request import check_pose_request, PoseRequest
 from hnr_planner.core.planning.poses.search import PoseSearch
 from hnr_planner.core.planning.poses.shorten import shorten_path, SPARE_ROWS
@@ -124,12 +124,22 @@ def _search(
         guide = shortest_guide(disc, request.start, goals[0], request.stream(GUIDE), budget)
     problem = request.problem(guide, disc)
     roots = space.to_kernel(np.vstack([request.start, goals]))
+
+    def other_guide(turn: int, stuck: Floats) -> Floats:
+        if turn % 3 == 0:
+            return guide
+        return detour_guide(
+            disc, request.start, goals[0], stuck, space.data.stride, budget, request.seed + turn
+        )
+
     first, best, iterations, number = None, None, 0, 0
     optimizing = effort.optimizing(budget, began) if effort.optimizes else budget
     status = PlannerStatus.TIMEOUT
     while True:
         limits = budget if best is None else optimizing
-        search = PoseSearch(problem, request.proposals, roots, request.stream(SEARCH, number))
+        search = PoseSearch(
+            problem, request.proposals, roots, request.stream(SEARCH, number), other_guide
+        )
         ended = run(search, limits)
         iterations += search.iterations
         path = _checked(request, *search.path) if ended is PlannerStatus.SOLVED else None

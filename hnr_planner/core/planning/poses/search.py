@@ -1,5 +1,6 @@
 """Planners of paths of poses, and their search."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -7,6 +8,8 @@ from hnr_planner.core.checks import Floats
 from hnr_planner.core.kernels.streams import Stream
 from hnr_planner.core.planning.planner import with_capacity
 from hnr_planner.core.planning.poses.connections import empty_connections, N_MOTIONS
+from hnr_planner.core.planning.poses.guide import point_of_guide
+from hnr_planner.core.planning.poses.steps import N_STROKES
 from hnr_planner.core.planning.poses.trees import (
     grow,
     N_NEAREST,
@@ -21,14 +24,20 @@ from numpy.typing import NDArray
 
 #: Rows of a table of vertices at first.
 FIRST_ROWS = 1024
+#: Distance that a tree tries to get along the guide at first, in strides.
+AHEAD = 12.0
+#: Most vertices that a transition adds.
+N_ADDED = max(N_MOTIONS, N_STROKES)
+#: Number of transitions after which an unsolved search follows another guide.
+GUIDE_TURN = 200
 
 #: The planners of paths of poses: how each extends its trees. ``hit_and_run`` is the paper's
 #: single chain, ``rrt`` a tree that grows towards uniform poses; the others grow two trees.
 POSE_PLANNERS = {
-    'hit_and_run': Proposals(0.0, 0.0, True, 1),
-    'rrt': Proposals(0.0, 1.0, False, 1),
-    'hit_and_run_connect': Proposals(0.7, 0.05, False, 2),
-    'rrt_connect': Proposals(0.0, 1.0, False, 2),
+    'hit_and_run': Proposals(0.0, 0.0, 0.0, True, 1),
+    'rrt': Proposals(0.0, 1.0, 0.0, False, 1),
+    'hit_and_run_connect': Proposals(0.7, 0.05, 0.1, False, 2),
+    'rrt_connect': Proposals(0.0, 1.0, 0.0, False, 2),
 }
 
 
@@ -47,6 +56,9 @@ class PoseSearch:
         The start, then the poses of the goal, kernel frame, all free.
     rng : Stream
         Random stream.
+    other_guide : callable
+        Returns a guide (k, 3) from the number of guides before and where to go round: a point (2,)
+        in the kernel frame.
 
     """
 
@@ -54,6 +66,7 @@ class PoseSearch:
     proposals: Proposals
     roots: Floats
     rng: Stream
+    other_guide: Callable[[int, Floats], Floats]
     iterations: int = field(init=False, default=0)
     solved: bool = field(init=False, default=False)
     _size: int = field(init=False)
@@ -72,6 +85,7 @@ class PoseSearch:
             np.zeros(N_NEAREST),
             np.zeros((3, 3)),
             np.array([0.0, guide[-1, 2] if len(guide) else 0.0]),
+            np.full(2, AHEAD * self.problem.space.stride),
         )
         self._reserve(self._size)
         self._trees.poses[: self._size] = self.roots
@@ -93,10 +107,29 @@ class PoseSearch:
         return {}
 
     def advance(self, n_iterations: int) -> None:
-        """Handle at most ``n_iterations`` further transitions, fewer once the search is solved."""
-        if self.solved:
-            return
-        self._reserve(self._size + N_MOTIONS * n_iterations + 1)
+        """
+        Handle at most ``n_iterations`` further transitions, fewer once the search is solved.
+
+        Every ``GUIDE_TURN`` transitions the trees follow another guide, where they have one.
+        """
+        end = self.iterations + n_iterations
+        while not self.solved and self.iterations < end:
+            turn, handled = divmod(self.iterations, GUIDE_TURN)
+            if turn > 0 and handled == 0 and len(self.problem.guide) > 0:
+                self._follow(turn)
+            self._grow(min(end - self.iterations, GUIDE_TURN - handled))
+
+    def _follow(self, turn: int) -> None:
+        """Follow another guide from now on, from its ends."""
+        stuck = point_of_guide(self.problem.guide, float(self._trees.progress.mean()))
+        guide = self.other_guide(turn, stuck)
+        self.problem = self.problem._replace(guide=guide)
+        self._trees.progress[:] = 0.0, guide[-1, 2] if len(guide) else 0.0
+        self._trees.ahead[:] = AHEAD * self.problem.space.stride
+
+    def _grow(self, n_iterations: int) -> None:
+        """Handle at most ``n_iterations`` further transitions, with one guide."""
+        self._reserve(self._size + N_ADDED * n_iterations + 1)
         self._size, taken, *joined = grow(
             self.problem,
             self.proposals,

@@ -1,9 +1,10 @@
 """
 Shorten a path of poses: replace sections by cheaper connections between two of its poses.
 
-A section runs between two poses drawn uniformly along the path, or from a vertex. It is replaced
-where a connection between the two lowers the cost of the whole path: its length, what driving
-backwards costs, and a price for each change of direction.
+A section runs between two poses along the path. Long ones are replaced while the path is still
+rough; later gains come from short ones, above all around changes of direction. A section is
+replaced where a connection between its ends lowers the cost of the whole path: its length, what
+driving backwards costs, and a price for each change of direction.
 """
 
 import math
@@ -15,6 +16,7 @@ from hnr_planner.core.planning.poses.connections import (
     connect,
     connection_is_free,
     cost_of,
+    is_seen_blocked,
     N_KEPT,
     N_MOTIONS,
 )
@@ -22,6 +24,9 @@ from hnr_planner.core.spaces.poses.motion import moved, wrapped
 
 #: Probability that an end of a section is a vertex, where the motion changes.
 AT_VERTEX = 0.3
+#: Probability that a section is short rather than of any length, and then, that it lies around a
+#: change of direction.
+LOCAL, AT_CHANGE = 0.7, 0.3
 #: Least decrease of the cost, as a fraction of it.
 LEAST_GAIN = 1e-4
 #: Motions that a replaced section may add, and rows at the end of the work arrays.
@@ -61,11 +66,8 @@ def shorten_path(space, prices, poses, twists, n, spare_poses, spare_twists, fou
     for _ in range(n_tries):
         if n > room:
             return n
-        i, f = _draw_end(space, twists, n, rng)
-        j, g = _draw_end(space, twists, n, rng)
-        if j < i or (j == i and g < f):
-            i, f, j, g = j, g, i, f
-        if j == i and f > 0.0 and g < 1.0:
+        i, f, j, g = _draw_section(space, twists, n, rng)
+        if j == i and (g <= f or (f > 0.0 and g < 1.0)):
             continue
         begin, end = spare_poses[len(twists)], spare_poses[len(twists) - 1]
         _write_pose(poses, twists, i, f, begin)
@@ -76,8 +78,10 @@ def shorten_path(space, prices, poses, twists, n, spare_poses, spare_twists, fou
                 break
             m = _replaced(poses, twists, n, i, f, j, g, found, k, spare_poses, spare_twists)
             lower = cost_of(prices, spare_twists, m, 1.0)
-            if lower < (1.0 - LEAST_GAIN) * cost and connection_is_free(
-                space, begin, found.twists[k], found.sizes[k]
+            if (
+                lower < (1.0 - LEAST_GAIN) * cost
+                and not is_seen_blocked(space, begin, found.twists[k], found.sizes[k])
+                and connection_is_free(space, begin, found.twists[k], found.sizes[k])
             ):
                 cost, n = lower, m
                 for row in range(n):
@@ -89,16 +93,51 @@ def shorten_path(space, prices, poses, twists, n, spare_poses, spare_twists, fou
 
 
 @kernel
-def _draw_end(space, twists, n, rng):
-    """Return the end of a section: a motion of the path, and the share of it that is before."""
+def _draw_section(space, twists, n, rng):
+    """
+    Return a section: the motion in which it begins, the share of it before, and both of its end.
+
+    Its length is uniform, or as often short as long: then it lies around a change of direction, or
+    anywhere.
+    """
     total = 0.0
     for k in range(n):
         total += _extent(space, twists, k)
-    along, k = uniform(rng) * total, 0
+    begin, end = uniform(rng) * total, uniform(rng) * total
+    if uniform(rng) < LOCAL:
+        if uniform(rng) < AT_CHANGE:
+            begin = _draw_change(space, twists, n, begin, rng)
+        length = space.stride * max(total / space.stride, 1.0) ** uniform(rng)
+        begin -= length * uniform(rng)
+        end = begin + length
+    i, f = _place(space, twists, n, min(begin, end), rng)
+    j, g = _place(space, twists, n, max(begin, end), rng)
+    return i, f, j, g
+
+
+@kernel
+def _draw_change(space, twists, n, otherwise, rng):
+    """Return how far along the path a random change of direction is; ``otherwise`` without one."""
+    found, along, direction, n_changes = otherwise, 0.0, 0.0, 0
+    for k in range(n):
+        if twists[k, 0] != 0.0:
+            if twists[k, 0] * direction < 0.0:
+                n_changes += 1
+                if uniform(rng) * n_changes < 1.0:
+                    found = along
+            direction = twists[k, 0]
+        along += _extent(space, twists, k)
+    return found
+
+
+@kernel
+def _place(space, twists, n, along, rng):
+    """Return the motion that is ``along`` the path, and the share of it before, or a vertex."""
+    k = 0
     while k < n - 1 and along >= _extent(space, twists, k):
         along -= _extent(space, twists, k)
         k += 1
-    share = min(along / _extent(space, twists, k), 1.0)
+    share = min(max(along / _extent(space, twists, k), 0.0), 1.0)
     if uniform(rng) < AT_VERTEX:
         return k, 0.0 if share < 0.5 else 1.0
     return k, share

@@ -1,9 +1,10 @@
 """
 Search for a path of poses by one or two trees of motions.
 
-Every transition extends a tree by one of three proposals: towards a pose along the *guide* (a
-shortest path of the disc inside the footprint), towards a uniform pose, or by a step of
-Hit-and-Run along a random twist. An extension towards a pose follows the cheapest connection from
+Every transition extends a tree by one of four proposals: towards a pose along the *guide* (a
+shortest path of the disc inside the footprint), towards a uniform pose, by a step of Hit-and-Run
+along a random twist, or by a *shuffle*, strokes back and forth that turn the robot where there is
+little room. An extension towards a pose follows the cheapest connection from
 the nearest vertex, up to the exact contact with an obstacle. Then the new vertex is connected with
 the nearest vertices of the other tree. How often each proposal is made, and whether the goal has a
 tree that grows, distinguishes the planners.
@@ -20,25 +21,31 @@ from hnr_planner.core.planning.poses.connections import (
     connect,
     connection_is_free,
     Connections,
+    is_seen_blocked,
     N_KEPT,
     Prices,
 )
 from hnr_planner.core.planning.poses.guide import draw_along_guide
-from hnr_planner.core.sampling.draws import REDRAWS_MAX
-from hnr_planner.core.spaces.lines import draw_direction, point_on_line
+from hnr_planner.core.planning.poses.steps import (
+    add_vertex,
+    hit_and_run_step,
+    SHORTEST,
+    shuffle,
+)
 from hnr_planner.core.spaces.poses.data import first_contact_of, PoseData
 from hnr_planner.core.spaces.poses.motion import moved, wrapped
-from hnr_planner.core.spaces.primitives import chord, contains
+from hnr_planner.core.spaces.primitives import contains
 from hnr_planner.core.trees import NONE
 import numpy as np
 from numpy.typing import NDArray
 
-#: Number of vertices of the other tree that a new vertex is connected with.
-N_NEAREST = 3
+#: Number of vertices of the other tree that a new vertex is connected with; where they are far,
+#: more than ``NEAR`` strides, the nearest alone.
+N_NEAREST, NEAR = 3, 8.0
 #: Probability that an extension which meets an obstacle ends before it, where there is room.
 BEFORE = 0.5
-#: Least length [cells] of a motion that is cut off by a contact.
-SHORTEST = 0.1
+#: Factors on the distance that a tree tries to get along the guide, where it got there or not.
+FARTHER, NEARER = 2.0, 1.3
 
 
 class Proposals(NamedTuple):
@@ -47,9 +54,9 @@ class Proposals(NamedTuple):
 
     Attributes
     ----------
-    guided, uniform : float
-        Probabilities of a pose along the guide, and of a uniform pose; else a step of Hit-and-Run
-        is made.
+    guided, uniform, shuffle : float
+        Probabilities of a pose along the guide, of a uniform pose, and of strokes back and forth;
+        else a step of Hit-and-Run is made.
     from_newest : bool
         Whether a step of Hit-and-Run begins at the newest vertex, which makes the tree a chain;
         else it begins at a uniform vertex.
@@ -60,6 +67,7 @@ class Proposals(NamedTuple):
 
     guided: float
     uniform: float
+    shuffle: float
     from_newest: bool
     n_trees: int
 
@@ -119,6 +127,8 @@ class PoseTrees(NamedTuple):
         Work arrays for poses and twists.
     progress : (2,)
         Length of the guide up to the farthest pose along it that each tree has reached.
+    ahead : (2,)
+        How far beyond that each tree tries to get along the guide [cells].
 
     """
 
@@ -131,6 +141,7 @@ class PoseTrees(NamedTuple):
     gaps: Floats
     work: Floats
     progress: Floats
+    ahead: Floats
 
 
 @kernel
@@ -163,19 +174,27 @@ def grow(
         if draw < proposals.guided and len(problem.guide) > 1:
             along = draw_along_guide(problem, trees, tree, rng)
             size, is_reached = _extend(problem, trees, tree, size, rng)
-            if is_reached and (along > trees.progress[tree]) == (tree == 0):
-                trees.progress[tree] = along
+            if (along > trees.progress[tree]) == (tree == 0):
+                if is_reached:
+                    trees.progress[tree] = along
+                    trees.ahead[tree] *= FARTHER
+                else:
+                    trees.ahead[tree] = max(trees.ahead[tree] / NEARER, problem.space.stride)
         elif draw < proposals.guided + proposals.uniform:
             for k in range(3):
                 low, high = problem.lower[k], problem.upper[k]
                 trees.work[0, k] = low + (high - low) * uniform(rng)
             size, _ = _extend(problem, trees, tree, size, rng)
+        elif draw < proposals.guided + proposals.uniform + proposals.shuffle:
+            size = shuffle(problem, trees, tree, size, rng)
         else:
-            size = _step(problem, trees, tree, size, proposals.from_newest, rng)
+            size = hit_and_run_step(problem, trees, tree, size, proposals.from_newest, rng)
         if size == before:
             continue
         newest, other = size - 1, 1 - tree
         for m in range(_find_nearest(problem, trees, other, size, trees.poses[newest])):
+            if m > 0 and trees.gaps[m] > NEAR * problem.space.stride:
+                break
             near = trees.nearest[m]
             first, last = (newest, near) if tree == 0 else (near, newest)
             k = _join(problem, trees, first, last)
@@ -190,8 +209,11 @@ def _join(problem, trees, first, last):
     found = trees.found
     connect(problem.space, problem.prices, trees.poses[first], trees.poses[last], 1.0, found)
     for k in range(N_KEPT - 1):
-        if found.costs[k] < math.inf and connection_is_free(
-            problem.space, trees.poses[first], found.twists[k], found.sizes[k]
+        begin, twists, n = trees.poses[first], found.twists[k], found.sizes[k]
+        if (
+            found.costs[k] < math.inf
+            and not is_seen_blocked(problem.space, begin, twists, n)
+            and connection_is_free(problem.space, begin, twists, n)
         ):
             return k
     return NONE
@@ -263,45 +285,8 @@ def _extend(problem, trees, tree, size, rng):
             return size, False
         twist = trees.twists[size]
         twist[0], twist[1], twist[2] = share * vx, share * vy, share * omega
-        row = _add(trees, tree, row, size)
+        row = add_vertex(trees, tree, row, size)
         size += 1
         if reached <= 1.0:
             return size, False
     return size, True
-
-
-@kernel
-def _step(problem, trees, tree, size, from_newest, rng):
-    """Add a step of Hit-and-Run from a vertex of a tree; return the number of vertices."""
-    space = problem.space
-    row = size - 1 if from_newest else math.floor(size * uniform(rng))
-    while trees.owners[row] != tree:
-        row = row - 1 if row > 0 else size - 1
-    x, u, back = trees.poses[row], trees.work[1], trees.work[2]
-    draw_direction(space, rng, u)
-    for i in range(3):
-        back[i] = -u[i]
-    lower, upper = chord(space, x, u, back)
-    if not space.reverse and u[0] != 0.0:
-        # The tree of the goal grows against the direction in which the robot drives.
-        if tree == 0:
-            lower = 0.0
-        else:
-            upper = 0.0
-    y = trees.poses[size]
-    for _ in range(REDRAWS_MAX):
-        s = lower + (upper - lower) * uniform(rng)
-        point_on_line(space, x, u, s, y)
-        if lower < s < upper and contains(space, y):
-            for i in range(3):
-                trees.twists[size, i] = s * u[i]
-            _add(trees, tree, row, size)
-            return size + 1
-    return size
-
-
-@kernel
-def _add(trees, tree, parent, row):
-    """Make ``row`` a vertex of a tree with this parent; return the row."""
-    trees.parents[row], trees.owners[row] = parent, tree
-    return row

@@ -28,7 +28,8 @@ class Roadmap:
     A planner with the shortest paths of its space computed in advance: ``Roadmap.build``.
 
     On a ``GridSpace`` its paths are the shortest, and results say so: ``PlanResult.lower_bound``
-    is their length, up to margins at corners. In other spaces of the plane they are hardly longer
+    is their length, up to margins at corners. Paths to a goal region are searched for by
+    ``Polyanya``. In other spaces of the plane they are hardly longer
     than the shortest.
 
     It is immutable: ``update`` and ``grow`` return new roadmaps. A result is a pure function of

@@ -87,6 +87,12 @@ class GridFrame:
         return math.cos(self.origin[2]), math.sin(self.origin[2])
 
     @cached_property
+    def _numbers(self) -> tuple[float, float, float, float, float, int]:
+        """Origin x and y [m], cosine and sine of the yaw, resolution [m] and rim [cells]."""
+        x, y, _ = self.origin
+        return x, y, *self._turn, self.resolution, self.RIM
+
+    @cached_property
     def to_cells(self) -> tuple[Floats, Floats]:
         """Matrix (2, 2) and offset (2,) from the map frame [m] to the kernel frame [cells]."""
         cos, sin = self._turn
@@ -95,15 +101,15 @@ class GridFrame:
 
     def to_kernel(self, points: Floats) -> Floats:
         """Convert points (..., 2) [m] of the map frame to the kernel frame [cells]."""
-        x, y, _ = self.origin
-        cells = _to_cells(_in_rows(points), x, y, *self._turn, self.resolution, self.RIM)
-        return cells.reshape(points.shape)
+        if points.ndim == 2 and points.flags.c_contiguous:  # the usual case, at little cost
+            return _to_cells(points, *self._numbers)
+        return _to_cells(_in_rows(points), *self._numbers).reshape(points.shape)
 
     def from_kernel(self, cells: Floats) -> Floats:
         """Convert points (..., 2) of the kernel frame [cells] to the map frame [m]."""
-        x, y, _ = self.origin
-        points = _from_cells(_in_rows(cells), x, y, *self._turn, self.resolution, self.RIM)
-        return points.reshape(cells.shape)
+        if cells.ndim == 2 and cells.flags.c_contiguous:
+            return _from_cells(cells, *self._numbers)
+        return _from_cells(_in_rows(cells), *self._numbers).reshape(cells.shape)
 
     def turn_to_kernel(self, directions: Floats) -> Floats:
         """Rotate directions (..., 2) of the map frame into the kernel frame, unscaled."""

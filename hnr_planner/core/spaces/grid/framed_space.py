@@ -56,7 +56,7 @@ class FramedSpace(Space):
         corners = self.from_kernel(self.frame.corners)
         return corners.min(axis=0), corners.max(axis=0)
 
-    @property
+    @cached_property
     def kernel_bounds(self) -> tuple[Floats, Floats]:
         """Lower and upper corner (2,) of the grid in the kernel frame [cells]."""
         return self.frame.corners[0], self.frame.corners[2]

@@ -49,6 +49,8 @@ class Slabs(NamedTuple):
     exits : (n_slabs,) int32
         Index of the next slab on the way out of a dead end; ``THROUGH``, -1, for a slab that is in
         no dead end, and the slab's own index at the last slab of a component that is a tree.
+    most_portals : int
+        Largest number of portals of one slab.
 
     """
 
@@ -60,6 +62,7 @@ class Slabs(NamedTuple):
     runs: Ints
     rows: Ints
     exits: Ints
+    most_portals: int
 
 
 @kernel
@@ -74,7 +77,8 @@ def build_slabs(free):
     portals = _find_portals(runs, boxes, rows)
     above, below = _portals_by_slab(portals, len(boxes))
     steps, exits = _steps_aside(portals, boxes), _find_dead_ends(portals, above, below)
-    return Slabs(boxes, portals, above, below, steps, runs, rows, exits)
+    most = _most_portals(above, below)
+    return Slabs(boxes, portals, above, below, steps, runs, rows, exits, most)
 
 
 @kernel
@@ -162,6 +166,16 @@ def _portals_by_slab(portals, n_slabs):
                 edge[slab, 0] = k
             edge[slab, 1] = k + 1
     return above, below
+
+
+@kernel
+def _most_portals(above, below):
+    """Return the largest number of portals of one slab; ``above``, ``below`` as in ``Slabs``."""
+    most = 0
+    for slab in range(len(above)):
+        n_above, n_below = above[slab, 1] - above[slab, 0], below[slab, 1] - below[slab, 0]
+        most = max(most, int(n_above + n_below))
+    return most
 
 
 @kernel

@@ -7,10 +7,13 @@ are one column of the normals; where these are stored sparsely, only its nonzero
 
 Rounding lets the distances drift, so they are recomputed every ``REFRESH`` steps, and a move to
 less than ``doubt`` from a plane is checked from the point itself: every point of a chain is free.
+
+Lines and moves have a loop each for any direction, and for an axis in the dense and in the sparse
+layout of the normals: hence the length of this module.
 """
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from hnr_planner.core.checks import Floats
 from hnr_planner.core.kernels.kernel import inlined, kernel
@@ -66,8 +69,7 @@ class PolytopeCache(NamedTuple):
 
 
 @memory_size.register(PolytopeData)
-@kernel
-def _memory_size(polytope, dim):
+def _memory_size(polytope: Any, dim: int) -> int:
     """Return the number of floats that store a point, slacks, rates and ratios."""
     return dim + 3 * len(polytope.offsets)
 

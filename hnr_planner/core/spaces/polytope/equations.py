@@ -10,6 +10,8 @@ from typing import Any, NamedTuple
 
 from hnr_planner.core.checks import Floats
 from hnr_planner.core.errors import SpaceError
+from hnr_planner.core.kernels.kernel import kernel
+from hnr_planner.core.spaces.transformed import multiply
 import numpy as np
 from numpy.typing import NDArray
 
@@ -47,10 +49,10 @@ class Plane(NamedTuple):
 
     def lift(self, points: Floats) -> Floats:
         """Return the points (..., dim) of the plane that have these free coordinates (..., k)."""
-        lifted = np.empty((*points.shape[:-1], len(self.free) + len(self.bound)))
-        lifted[..., self.free] = points
-        lifted[..., self.bound] = points @ self.matrix.T + self.offset
-        return lifted
+        flat = np.ascontiguousarray(points.reshape(-1, points.shape[-1]))
+        columns = np.ascontiguousarray(self.matrix.T)
+        lifted = _lifted(self.free, self.bound, columns, self.offset, flat)
+        return np.asarray(lifted.reshape(*points.shape[:-1], lifted.shape[1]))
 
     def holds(self, points: Floats) -> NDArray[np.bool_]:
         """Return which of the points (..., dim) satisfy the equations, up to ``ON_PLANE``."""
@@ -144,3 +146,21 @@ def _keep_fixed(equations: Any, targets: Floats, bound: NDArray[np.intp], offset
         k = equations.indptr[row]
         if place[equations.indices[k]] >= 0:
             offset[place[equations.indices[k]]] = targets[row] / equations.data[k]
+
+
+@kernel
+def _lifted(free, bound, columns, offset, points):
+    """
+    Return the points (n, dim) of the plane that have these free coordinates (n, k).
+
+    ``columns`` (k, r) are those of the plane's matrix.
+    """
+    lifted = np.empty((len(points), len(free) + len(bound)))
+    values = np.empty(len(bound))
+    for n in range(len(points)):
+        multiply(columns, points[n], values)
+        for j in range(len(free)):
+            lifted[n, free[j]] = points[n, j]
+        for i in range(len(bound)):
+            lifted[n, bound[i]] = values[i] + offset[i]
+    return lifted

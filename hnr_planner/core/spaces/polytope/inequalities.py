@@ -184,7 +184,7 @@ def scaled_rows(matrix: Any, factors: Floats) -> Any:
 def _dimension(a: Any, a_eq: Any, lower: Any, upper: Any) -> int:
     """Return the number of coordinates, from the first argument that has it."""
     for name, matrix in (('a', a), ('a_eq', a_eq)):
-        if matrix is not None:
+        if matrix is not None and not _is_empty_list(matrix):
             shape = np.shape(matrix) if not hasattr(matrix, 'shape') else matrix.shape
             if len(shape) != 2 or shape[1] == 0:
                 if len(shape) == 0:
@@ -195,6 +195,11 @@ def _dimension(a: Any, a_eq: Any, lower: Any, upper: Any) -> int:
         if np.ndim(bound) == 1 and np.size(bound):
             return int(np.size(bound))
     raise SpaceError('a polytope needs a matrix a or a_eq, or bounds (dim,)')
+
+
+def _is_empty_list(matrix: Any) -> bool:
+    """Return whether a matrix has neither rows nor a number of columns, like ``[]``."""
+    return np.ndim(matrix) == 1 and np.size(matrix) == 0
 
 
 def _checked_rows(
@@ -208,16 +213,15 @@ def _checked_rows(
             raise SpaceError(f'{name} and {limits_name} must be given together')
         return sparse.csr_array((0, dim)), np.empty(0)
     right = check_numbers(limits_name, limits, SpaceError)
+    matrix = np.empty((0, dim)) if _is_empty_list(matrix) else matrix
     if sparse.issparse(matrix):
         rows = sparse.csr_array(matrix, dtype=np.float64)
     else:
         rows = sparse.csr_array(np.atleast_2d(check_numbers(name, matrix, SpaceError)))
     if right.ndim == 0:
         right = np.full(rows.shape[0], float(right))
-    if right.ndim != 1 or right.size == 0:
-        raise SpaceError(
-            f'{limits_name} must have shape (m,) with m at least 1, got {right.shape}'
-        )
+    if right.ndim != 1:
+        raise SpaceError(f'{limits_name} must have shape (m,), got {right.shape}')
     if rows.shape != (len(right), dim):
         raise SpaceError(
             f'{name} must have shape ({len(right)}, dim) as {limits_name} has, '

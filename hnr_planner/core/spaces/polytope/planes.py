@@ -19,10 +19,14 @@ from hnr_planner.core.spaces.primitives import contains, first_entry, first_exit
 import numpy as np
 from numpy.typing import NDArray
 
-#: Number of rows below which a matrix is never stored densely.
+#: Number of rows from which a matrix is stored densely if at least one in ``SPARSE`` of its
+#: numbers is not zero.
 LONG = 32
-#: A matrix is stored densely only if at least one in this many of its numbers is not zero.
 SPARSE = 4
+#: Number of rows from which a matrix is stored densely if at least one in ``FULL`` of its numbers
+#: is not zero: a loop over so few rows takes about as long as half as many lookups.
+SHORT = 12
+FULL = 2
 #: Products of unit vectors below this are rounding errors of 0.
 SPURIOUS = 1e-13
 
@@ -95,10 +99,12 @@ def layout_of(matrix: Floats) -> Layout:
     Return a matrix (m, dim) in the dense or the sparse layout.
 
     The layout is dense if the matrix has at least ``LONG`` rows, and at least one in ``SPARSE`` of
-    its numbers is not zero.
+    its numbers is not zero; and with at least ``SHORT`` rows if one in ``FULL`` is not.
     """
     m, dim = matrix.shape
-    if m >= LONG and np.count_nonzero(matrix) * SPARSE >= matrix.size:
+    nonzero = np.count_nonzero(matrix)
+    is_long = m >= LONG and nonzero * SPARSE >= matrix.size
+    if is_long or (m >= SHORT and nonzero * FULL >= matrix.size):
         none, empty = np.empty(0, np.uint64), np.empty(0)
         starts = np.empty((0, 3), np.uint64)
         dense = matrix.T.copy()

@@ -17,6 +17,9 @@ from hnr_planner.core.spaces.primitives import chord, contains, first_exit
 import numpy as np
 from numpy.typing import NDArray
 
+#: Length of a short manoeuvre of a car, in turning radii.
+STRIDE = 0.6
+
 
 class PoseData(NamedTuple):
     """
@@ -38,6 +41,8 @@ class PoseData(NamedTuple):
         Largest curvature of a car's arcs [1 / cells].
     reach : float
         Distance from the origin of the robot's frame to its farthest vertex [cells].
+    stride : float
+        Length of a short manoeuvre [cells]: the reach, or a good part of a car's turning radius.
     reverse : bool
         Whether the robot drives backwards.
 
@@ -52,6 +57,7 @@ class PoseData(NamedTuple):
     drive: int
     max_curvature: float
     reach: float
+    stride: float
     reverse: bool
 
 
@@ -72,6 +78,7 @@ def pose_data(blocked: Bools, footprint: Footprint, drive: Drive, resolution: fl
         drive.number,
         resolution / radius if radius > 0.0 else math.inf,
         footprint.reach,
+        max(footprint.reach, STRIDE * radius / resolution),
         drive.reverse,
     )
 

@@ -13,6 +13,7 @@ from hnr_planner import core
 from hnr_planner.core import ALGORITHMS, GridSpace, PlannerStatus, PlanResult, RequestError
 from hnr_planner.core.kernels.streams import stream
 from hnr_planner.core.planning.alternatives import alternatives as module
+from hnr_planner.core.planning.alternatives.sleeve import shortest_in_class
 from hnr_planner.core.planning.homology import islands_at, signature
 from hnr_planner.core.planning.postprocessing.simplify import shorten
 from hnr_planner.maps import load_map
@@ -90,6 +91,17 @@ def length(path: Floats) -> float:
     return float(np.hypot(*np.diff(path, axis=0).T).sum())
 
 
+def slack(space: GridSpace, path: Floats) -> list[int]:
+    """Return the vertices at which the path could be pulled straighter: no obstacle is inside."""
+    loose = []
+    for k, (a, x, b) in enumerate(zip(path, path[1:], path[2:], strict=False)):
+        inwards = (a - x) / math.dist(a, x) + (b - x) / math.dist(b, x)
+        size = float(np.hypot(*inwards))
+        if size > 1e-3 and space.contains(x + 1e-3 * space.resolution / size * inwards):
+            loose.append(k + 1)
+    return loose
+
+
 def check(space: GridSpace, result: PlanResult, n_paths: int) -> None:
     """Hold every law of the answer to a request for alternatives."""
     assert result.status is PlannerStatus.SOLVED
@@ -99,7 +111,10 @@ def check(space: GridSpace, result: PlanResult, n_paths: int) -> None:
     assert result.length == pytest.approx(length(result.path), rel=1e-12)
     lengths = [length(path) for path in paths]
     assert lengths == sorted(lengths)
+    # Taut everywhere, a path is the shortest that it can be deformed into.
+    assert len(paths) == 1 or ', each the shortest that it can be' in result.message
     for path in paths:
+        assert slack(space, path) == []
         assert path_collisions(path, space.blocked, space.resolution, space.origin) == []
         np.testing.assert_array_equal(path[[0, -1]], result.path[[0, -1]])
     assert not any(map(crosses_itself, paths[1:]))
@@ -271,6 +286,28 @@ def detour(beyond: float) -> Floats:
     return np.array(steps, dtype=float)
 
 
+@pytest.mark.parametrize('seed', range(10))
+def test_on_a_grid_a_ragged_path_becomes_the_shortest_that_it_can_be_deformed_into(seed: int):
+    """It may cross itself, turn back and pass along lines of cells."""
+    rng = np.random.default_rng(seed)
+    blocked = maps.speckle(20, 24, 0.2, seed=seed)
+    space = GridSpace.from_blocked(blocked, 0.5, ORIGIN)
+    around = islands_at(space.island_points)
+    for _ in range(3):
+        cells = np.argwhere(space.largest_component())
+        stops = space.cell_centres(*cells[rng.integers(len(cells), size=4)].T)
+        parts = [plan(space, a, b, seed=seed, simplify=False).path for a, b in pairwise(stops)]
+        path = np.concatenate(parts)
+        points = space.to_kernel(path)
+        taut, least = shortest_in_class(space.data, space.slabs, points, space.margin)
+        assert signature(around, taut) == signature(around, points)
+        taut = space.from_kernel(taut)
+        assert path_collisions(taut, blocked, 0.5, ORIGIN) == []
+        assert slack(space, taut) == []
+        assert 0.5 * least == pytest.approx(length(taut), abs=1e-6)
+        assert length(taut) <= length(path) + 1e-9
+
+
 @pytest.mark.parametrize('seed', range(20))
 def test_a_path_is_pulled_taut_on_its_side_of_every_island(seed: int):
     blocked = np.zeros((60, 60), dtype=bool)
@@ -290,10 +327,12 @@ def test_a_path_is_pulled_taut_on_its_side_of_every_island(seed: int):
 def test_a_mutant_that_lets_go_of_the_class_is_caught(monkeypatch: pytest.MonkeyPatch):
     """Shortened past islands, different classes become one: then three paths are not found."""
 
-    def careless(space, path, rng, budget, islands):
-        return shorten(space, path, rng, budget)
+    def careless(data, slabs, points, margin):
+        path = SPACE.from_kernel(points)
+        shorter = shorten(SPACE, path, stream(0), module.Budget(math.inf))
+        return SPACE.to_kernel(shorter), length(shorter)
 
-    monkeypatch.setattr(module, 'shorten', careless)
+    monkeypatch.setattr(module, 'shortest_in_class', careless)
     start, goal = SPACE.cell_centres(39, 3), SPACE.cell_centres(39, 56)
     found = [len(plan(SPACE, start, goal, alternatives=3, seed=k).paths) for k in range(5)]
     assert min(found) < 3

@@ -115,6 +115,28 @@ def test_a_goal_region_is_reached_within_its_tolerances():
     assert turned.status is PlannerStatus.SOLVED
 
 
+def test_a_car_parks_in_a_slot_little_longer_than_itself():
+    # The robot is .9 m long, and turns out of the slot of 1.3 m by strokes back and forth.
+    blocked = np.zeros((60, 120), dtype=bool)
+    blocked[:15, :50] = blocked[:15, 76:] = True
+    space = PoseSpace(GridSpace.from_blocked(blocked, 0.05), RECTANGLE, **DRIVES['car'])
+    start, goal = (1.2, 1.5, 0.0), (3.05, 0.36, 0.0)
+    check(space, plan(space, start, goal, seed=1, **PATIENT), start, goal)
+
+
+def test_a_way_round_is_found_where_the_shortest_path_of_the_disc_is_too_tight():
+    # The gap is as wide as the robot, which touches both sides; the door is at the other end.
+    blocked = np.zeros((120, 60), dtype=bool)
+    blocked[:100, 29:31] = True
+    blocked[10:16, 29:31] = False
+    space = PoseSpace(GridSpace.from_blocked(blocked, 0.1), RECTANGLE, **DRIVES['car'])
+    start, goal = (1.5, 1.3, 0.0), (4.5, 1.3, 0.0)
+    options = {'time_limit': math.inf, 'max_iterations': 3000}
+    solved = plan(space, start, goal, seed=1, **options)
+    check(space, solved, start, goal)
+    assert solved.path[:, 1].max() > 10.0
+
+
 def test_ends_that_are_not_free_and_places_that_no_disc_reaches_are_named():
     space = hall()
     result = plan(space, (4.0, 1.0, 0.0), GOAL)

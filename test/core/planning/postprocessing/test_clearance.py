@@ -13,6 +13,7 @@ from hnr_planner.core.planning.homology import islands_at, signature
 from hnr_planner.core.planning.limits import Budget
 from hnr_planner.core.planning.postprocessing import clearance as module
 from hnr_planner.core.planning.postprocessing.clearance import increase_clearance, path_cost
+from hnr_planner.core.spaces.grid.kept_clear import kept_clear
 from hypothesis import given, settings, strategies
 import numpy as np
 from numpy.typing import NDArray
@@ -253,3 +254,43 @@ def test_every_planner_keeps_a_clearance(algorithm: str):
     paths = [plan(SPACE, START, GOAL, clearance=c, **request).path for c in (0.0, 0.3)]
     costs = [path_cost(SPACE, path, 0.3) for path in paths]
     assert costs[1] < costs[0]
+
+
+# -- the exact search over cells that keep it ----------------------------------------------------
+
+
+def two_ways() -> NDArray[np.bool_]:
+    """Return a thick wall with a narrow passage on the short way, and a wide one farther off."""
+    occupied = np.zeros((60, 40), dtype=bool)
+    occupied[:, 14:26] = True
+    occupied[10:12, 14:26] = occupied[40:56, 14:26] = False
+    return occupied
+
+
+@pytest.mark.parametrize(
+    'arguments', [{'algorithm': 'polyanya'}, {'optimize_for': 60.0, 'optimize_iterations': 1}]
+)
+def test_the_exact_search_takes_the_wide_passage_instead_of_the_narrow_one(arguments: dict):
+    occupied = two_ways()
+    space = GridSpace.from_blocked(occupied)
+    ends = (5.5, 18.5), (34.5, 18.5)
+    narrow = plan(space, *ends, seed=0, **arguments)
+    wide = plan(space, *ends, clearance=4.0, seed=0, **arguments)
+    assert narrow.path[:, 1].max() < 20.0 < wide.path[:, 1].max()
+    assert path_collisions(wide.path, occupied, 1.0) == []
+    assert wall_distances(points_on(wide.path, 0.25), occupied).min() >= 3.5
+    assert wide.lower_bound == narrow.lower_bound
+
+
+def test_cells_that_keep_a_clearance_are_those_of_the_definition():
+    occupied = np.random.default_rng(2).random((30, 40)) < 0.02
+    space = GridSpace.from_blocked(occupied, 0.5, robot_radius=0.6)
+    for clearance in (0.4, 0.5, 0.6, 1.5):
+        clear = kept_clear(space, clearance)
+        expected = space.blocked.copy()
+        for row, column in np.argwhere(~expected):
+            across = np.maximum(np.abs(np.argwhere(occupied) - (row, column)) - 1, 0)
+            expected[row, column] = np.hypot(*across.T).min() * 0.5 < clearance - 1e-9
+        np.testing.assert_array_equal(clear.blocked, expected)
+        assert kept_clear(space, clearance) is clear
+    assert kept_clear(space, 0.4) is not clear

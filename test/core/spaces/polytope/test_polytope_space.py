@@ -36,6 +36,14 @@ def test_inequalities_as_people_write_them_give_the_same_polytope(a, b):
     np.testing.assert_array_equal(space.contains(points), expected.contains(points))
 
 
+@pytest.mark.parametrize('nothing', [[], np.empty((0, 3)), sparse.csr_array((0, 3))])
+def test_no_rows_are_no_constraint(nothing):
+    sides = {'lower': np.zeros(3), 'upper': 1.0}
+    expected = repr(PolytopeSpace(**sides))
+    assert repr(PolytopeSpace(a_eq=nothing, b_eq=[], **sides)) == expected
+    assert repr(PolytopeSpace(nothing, [], **sides)) == expected
+
+
 def test_a_row_is_named_as_the_caller_counts_it():
     space = PolytopeSpace(np.vstack([np.zeros(3), SIMPLEX]), [1.0, *RIGHT])
     assert space.why_not_free((0.2, -0.5, 0.2)).endswith('0.5 beyond the plane of row 2 of a')

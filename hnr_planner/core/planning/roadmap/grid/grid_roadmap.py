@@ -6,14 +6,13 @@ that is returned passes each corner at the space's margin.
 """
 
 from dataclasses import dataclass
-import math
 from typing import Any
 
 from hnr_planner.core.cancellation import Event
 from hnr_planner.core.checks import Floats
 from hnr_planner.core.kernels.streams import Stream
 from hnr_planner.core.planning.planner import PathSearch, Problem
-from hnr_planner.core.planning.planners.auto import Auto
+from hnr_planner.core.planning.planners.polyanya import Polyanya
 from hnr_planner.core.planning.planners.taut_path import step_aside
 from hnr_planner.core.planning.roadmap.grid.corners import STEP_X, X
 from hnr_planner.core.planning.roadmap.grid.graph import build_graph, Graph, repair_graph
@@ -83,18 +82,18 @@ class GridRoadmap:
 
     def start(self, problem: Problem, rng: Stream) -> PathSearch:
         """
-        Return a solved search, or one of ``Auto`` where no path leads to the goal itself.
+        Return a solved search; for a goal region the search of ``Polyanya``, which is exact too.
 
-        The latter happens for goal regions only.
+        The graph has the shortest paths to points; which point of a region is the nearest is
+        not known before.
         """
+        if problem.goal_radius > 0.0:
+            return Polyanya().for_space(self.space).start(problem, rng)
         ends = problem.start[np.newaxis], problem.goal[np.newaxis]
         lengths, _, bends = shortest_paths(self.graph, problem.space, *ends)
-        if math.isinf(lengths[0]):
-            return Auto().start(problem, rng)
         points = np.vstack([problem.start, self._beside(bends), problem.goal])
         path = step_aside(problem.space, points, problem.margin)
-        is_exact = problem.goal_radius == 0.0  # a region may be reached by a shorter path
-        return SolvedSearch(path, True, lengths[0] if is_exact else 0.0)
+        return SolvedSearch(path, True, lengths[0])
 
     def _beside(self, corners: NDArray[Any]) -> Floats:
         """Return the points (k, 2), kernel frame, at the margin from corners (k,)."""

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from hnr_planner.core.checks import Floats
 from hnr_planner.core.kernels.kernel import inlined, kernel
-from hnr_planner.core.planning.planners.cones import N_OPEN, pop, push
+from hnr_planner.core.planning.planners.heap import N_OPEN, pop, push
 from hnr_planner.core.planning.roadmap.grid.corners import turn_of, X, Y
 from hnr_planner.core.planning.roadmap.grid.sweep import cross
 from hnr_planner.core.trees import NONE

@@ -10,7 +10,7 @@ from typing import NamedTuple
 from hnr_planner.core.checks import Floats
 from hnr_planner.core.kernels.borrowed import borrowed
 from hnr_planner.core.kernels.kernel import inlined, kernel
-from hnr_planner.core.planning.planners.cones import N_OPEN
+from hnr_planner.core.planning.planners.heap import N_OPEN
 from hnr_planner.core.planning.roadmap.grid.corners import state_along, X, Y
 from hnr_planner.core.planning.roadmap.grid.edges import fit
 from hnr_planner.core.planning.roadmap.grid.labels import (
@@ -195,7 +195,11 @@ def _connect_goal(graph, work):
 
 @kernel
 def _connect_start(graph, work, x, y):
-    """Label the states seen from the start (x, y), and store the straight path if it is free."""
+    """
+    Label the states at corners visible from the start (x, y), kernel frame.
+
+    If the goal itself is visible, store the straight path as the shortest one instead.
+    """
     places, goal = graph.corners.places, work.goal
     n_seen = see_from_point(graph.slabs, graph.corners, x, y, goal[0], goal[1], work.sweep)
     for k in range(n_seen):
