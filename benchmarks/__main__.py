@@ -16,6 +16,7 @@ import time
 from benchmarks.answers import answers
 from benchmarks.clearance import clearance
 from benchmarks.competitors import Competitor, lineup
+from benchmarks.dimensions import dimensions
 from benchmarks.every_problem import every_problem
 from benchmarks.exact import exact
 from benchmarks.first_path import first_path
@@ -48,6 +49,7 @@ SECTIONS: tuple[SectionOf, ...] = (
     success,
     exact,
     roadmap,
+    dimensions,
     sampling,
     rounded_sampling,
     clearance,
