@@ -22,7 +22,7 @@ from test.ros.domain import own_domain
 from test.ros.harness import grid_message, node_process, pose
 
 from benchmarks.answer_cost import cost_of, longest_hold
-from benchmarks.caller import Caller, Pair, START
+from benchmarks.caller import BARE, Caller, Pair, START
 from benchmarks.progress import show
 from benchmarks.sections import Bench, Section, Verdict, verdict_table
 from geometry_msgs.msg import PoseStamped
@@ -109,7 +109,7 @@ def _compared(caller: Caller, goal: PoseStamped, n_pairs: int) -> Iterator[Verdi
     with _process('benchmarks.ready_made', str(n_poses)):
         for listening in (False, True):
             listener = caller.listener() if listening else None
-            caller.meet_ready_made(goal)
+            caller.meet_ready_made(caller.ready_made, goal)
             pairs = [caller.pair(goal) for _ in range(n_pairs)]
             if listener is not None:
                 listener.destroy_node()
@@ -120,25 +120,32 @@ def _costs(caller: Caller, pid: int, n_pairs: int) -> Iterator[Verdict]:
     """Measure the CPU time of the process ``pid`` for an answer that needs no search."""
     goal = pose(*SEEN_GOAL)
     n_poses = len(caller.ask(caller.planner, goal, start=SEEN_START)[0].poses)
-    with _process('benchmarks.ready_made', str(n_poses)) as ready_made:
-        caller.meet_ready_made(goal)
+    bare = '--ros-args', '-r', f'__ns:={BARE}'
+    with (
+        _process('benchmarks.ready_made', str(n_poses)) as ready_made,
+        _process('benchmarks.ready_made', '1', *bare) as of_one_pose,
+    ):
+        caller.meet_ready_made(caller.ready_made, goal)
+        caller.meet_ready_made(caller.bare, goal)
         for listening in (False, True):
             listener = caller.listener() if listening else None
             costs = [
                 (
                     cost_of(lambda: caller.ask(caller.planner, goal, start=SEEN_START), pid),
                     cost_of(lambda: caller.ask(caller.ready_made, goal), ready_made.pid),
+                    cost_of(lambda: caller.ask(caller.bare, goal), of_one_pose.pid),
                 )
                 for _ in range(n_pairs)
             ]
             if listener is not None:
                 listener.destroy_node()
-            ours, least = (median(times) for times in zip(*costs, strict=True))
+            ours, least, least_of_one = (median(times) for times in zip(*costs, strict=True))
             yield Verdict(
                 f'CPU time of the node for an answer of {n_poses} poses without a search, '
                 f'pictures {"" if listening else "not "}subscribed to',
                 f'{1e3 * MOST_CPU:g} ms, {MOST_CPU_RATIO} x',
-                f'{1e3 * ours:.2f} ms, ready-made {1e3 * least:.2f} ms: {ours / least:.2f} x',
+                f'{1e3 * ours:.2f} ms, ready-made {1e3 * least:.2f} ms: {ours / least:.2f} x; '
+                f'ready-made of one pose {1e3 * least_of_one:.2f} ms',
                 ours <= min(MOST_CPU, MOST_CPU_RATIO * least),
             )
 

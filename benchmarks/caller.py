@@ -25,6 +25,9 @@ START = (0.25, 0.25)
 #: Time [s] for the planning node to publish everything about a request.
 PAUSE = 0.02
 
+#: Namespace of a node that sends a ready-made path of one pose: what rclpy alone costs.
+BARE = '/bare'
+
 
 class Pair(NamedTuple):
     """Times [s] of an answer of the planning node, of its search, and of the ready-made answer."""
@@ -51,6 +54,7 @@ class Caller:
         )
         self.planner = self._node.create_client(GetPlan, '/hnr_planner/plan')
         self.ready_made = self._node.create_client(GetPlan, f'/{READY_MADE}/plan')
+        self.bare = self._node.create_client(GetPlan, f'{BARE}/{READY_MADE}/plan')
 
     def close(self) -> None:
         """End the client, so that nobody gets its map any more."""
@@ -69,12 +73,12 @@ class Caller:
             node.create_subscription(kind, f'/hnr_planner/{topic}', _ignore, LATCHED, raw=True)
         return node
 
-    def meet_ready_made(self, goal: PoseStamped) -> None:
-        """Request the ready-made path until it comes: before discovery ends, answers get lost."""
+    def meet_ready_made(self, client: Client, goal: PoseStamped) -> None:
+        """Request a ready-made path until it comes: before discovery ends, answers get lost."""
         deadline = time.monotonic() + SOON
         while True:
             with suppress(TimeoutError):
-                self.ask(self.ready_made, goal, patience=1.0)
+                self.ask(client, goal, patience=1.0)
                 return
             if time.monotonic() > deadline:
                 raise TimeoutError('the ready-made path does not come')
