@@ -260,8 +260,13 @@ def test_path_is_found_anew_when_a_newer_map_blocks_only_the_sweep(solved: PlanR
 
 
 def _beside(poses: np.ndarray) -> tuple[int, int]:
-    """Return a cell that the footprint sweeps, but on which no position of the path lies."""
-    x, y, yaw = poses[len(poses) // 3]
+    """
+    Return a cell that the footprint sweeps, but on which no position of the path lies.
+
+    It is near the start, where there is room to drive around it.
+    """
+    away_from_start = np.hypot(*(poses[:, :2] - poses[0, :2]).T)
+    x, y, yaw = poses[np.argmax(away_from_start > 0.35)]
     side = np.array([math.cos(yaw), math.sin(yaw)]) * 0.25
     away = np.array([x, y]) + side + 0.12 * np.array([-math.sin(yaw), math.cos(yaw)])
     cells = _cells(np.vstack([away, poses[:, :2]]))
