@@ -96,7 +96,8 @@ def wrong_plan(
     wrong = judge.collisions(result.path, result.twists, STEP)
     if not (np.array_equal(result.path[0], start) and np.array_equal(result.path[-1], goal)):
         wrong.append('the ends are others')
-    return result.status, f'from {start.tolist()} to {goal.tolist()}: {wrong}' if wrong else ''
+    where = f'seed {seed} from {start.tolist()} to {goal.tolist()}'
+    return result.status, f'{where}: {wrong}' if wrong else ''
 
 
 if __name__ == '__main__':

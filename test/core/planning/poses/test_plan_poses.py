@@ -134,7 +134,8 @@ def test_a_way_round_is_found_where_the_shortest_path_of_the_disc_is_too_tight()
     options = {'time_limit': math.inf, 'max_iterations': 3000}
     solved = plan(space, start, goal, seed=1, **options)
     check(space, solved, start, goal)
-    assert solved.path[:, 1].max() > 10.0
+    # Its nose goes round the end of the wall, at 10 m, less than its length before its origin.
+    assert solved.path[:, 1].max() > 9.0
 
 
 def test_ends_that_are_not_free_and_places_that_no_disc_reaches_are_named():
