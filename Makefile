@@ -28,7 +28,8 @@ help:
 	@echo 'make demo MAP=FILE.yaml    the same on a map of your own'
 	@echo 'make demo KEEP=1           leave the nodes running, to try calls by hand'
 	@echo 'make test                  run the tests (ARGS="-k name -x" goes to pytest)'
-	@echo 'make compiled              those tests as machine code that else run interpreted'
+	@echo 'make compiled              sweeps, and as machine code what else is tested interpreted'
+	@echo 'make digests               whether interpreted kernels and machine code agree to the bit'
 	@echo 'make soak                  the nodes under load and faults, for a quarter of an hour'
 	@echo 'make check                 format, lint, types, spelling, the site, then the tests'
 	@echo 'make bench                 side by side with OMPL, grid search and hopsy, half an hour'
@@ -90,12 +91,18 @@ PARALLEL := --numprocesses logical --maxprocesses 4 --dist loadfile --no-loadsco
 
 .PHONY: test
 test: $(TEST)
-	$(VENV) -m pytest $(PARALLEL) $(ARGS)
+	$(VENV) -m pytest $(PARALLEL) -m 'not sweep' $(ARGS)
 
-# What makes tests quick, running the kernels of a few calls interpreted, is left out here.
+# What makes tests quick is left out here: running the kernels of a few calls interpreted, and
+# leaving out sweeps.
 .PHONY: compiled
 compiled: $(TEST)
-	HNR_COMPILE_ALL=1 $(VENV) -m pytest -m interpreted $(PARALLEL) $(ARGS)
+	HNR_COMPILE_ALL=1 $(VENV) -m pytest $(PARALLEL) -m 'interpreted or sweep' $(ARGS)
+
+# BEFORE=FILE compares with the digests that another version wrote.
+.PHONY: digests
+digests: $(TEST)
+	$(VENV) -m test.digests $(if $(BEFORE),--before '$(BEFORE)') $(ARGS)
 
 .PHONY: soak
 soak: $(TEST)

@@ -16,10 +16,12 @@ import time
 from benchmarks.answers import answers
 from benchmarks.clearance import clearance
 from benchmarks.competitors import Competitor, lineup
+from benchmarks.dimensions import dimensions
 from benchmarks.every_problem import every_problem
 from benchmarks.exact import exact
 from benchmarks.first_path import first_path
 from benchmarks.interpreted import interpreted
+from benchmarks.kept_routes import kept_routes
 from benchmarks.kinodynamic import kinodynamic
 from benchmarks.picture import draw
 from benchmarks.pinned import on_one_core
@@ -47,10 +49,12 @@ SECTIONS: tuple[SectionOf, ...] = (
     success,
     exact,
     roadmap,
+    dimensions,
     sampling,
     rounded_sampling,
     clearance,
     kinodynamic,
+    kept_routes,
     poses,
     answers,
     properties,

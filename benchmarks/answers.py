@@ -10,7 +10,7 @@ goal and nothing is searched, the CPU time of both processes is compared.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 import math
 import os
 from pathlib import Path
@@ -19,42 +19,26 @@ import subprocess
 import sys
 from tempfile import TemporaryDirectory
 from test.ros.domain import own_domain
-from test.ros.harness import grid_message, LATCHED, node_process, pose, SOON, stamp_of
-import time
-from typing import NamedTuple
+from test.ros.harness import grid_message, node_process, pose
 
 from benchmarks.answer_cost import cost_of, longest_hold
+from benchmarks.caller import BARE, Caller, Pair, START
 from benchmarks.progress import show
-from benchmarks.ready_made import NAME as READY_MADE
 from benchmarks.sections import Bench, Section, Verdict, verdict_table
-from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import PoseStamped
 from hnr_planner.core import GridSpace, plan
-from hnr_planner.ros.messages.outcomes import read_outcome
-from nav_msgs.msg import OccupancyGrid
-from nav_msgs.msg import Path as PathMessage
-from nav_msgs.srv import GetPlan
 import numpy as np
 from numpy.typing import NDArray
-import rclpy
-from rclpy.client import Client
-from rclpy.context import Context
-from rclpy.executors import SingleThreadedExecutor
-from rclpy.node import Node
-from sensor_msgs.msg import PointCloud2
-from visualization_msgs.msg import MarkerArray
 
 #: Cells along a side, cells across a corridor, and side of a cell [m] of the map: a serpentine,
 #: so that a search has more samples than a marker shows.
 SIDE, CORRIDOR, RESOLUTION = 200, 5, 0.1
-#: Ends of the long path, and a goal outside the map [m].
-START, GOAL, NOWHERE = (0.25, 0.25), (19.75, 19.75), (-1.0, -1.0)
+#: The end of the long path, and a goal outside the map [m].
+GOAL, NOWHERE = (19.75, 19.75), (-1.0, -1.0)
 #: About how many poses the long path has.
 N_POSES = 2000
 #: With a seed, every request gets the same search and the same path.
 SEED = 1
-#: Time [s] for the planning node to publish everything about a request.
-PAUSE = 0.02
 #: Target: time of an answer besides its search, as a multiple of the ready-made answer's.
 MOST = 1.5
 #: Pairs of answers that are timed.
@@ -67,14 +51,6 @@ SEEN_START, SEEN_GOAL, SEEN_POSES = (1.0, 1.0), (19.0, 19.0), 2032
 #: Clients that ask at once as fast as answers come, for so long [s]; and the target: answers a
 #: second, as a multiple of those of a node that builds an object for each pose.
 N_CLIENTS, SECONDS, MORE_ANSWERS = 8, 5.0, 4.0
-
-
-class Pair(NamedTuple):
-    """Times [s] of an answer of the planning node, of its search, and of the ready-made answer."""
-
-    answer: float
-    search: float
-    ready_made: float
 
 
 def answers(bench: Bench) -> Section:
@@ -93,7 +69,7 @@ def _measure(n_pairs: int) -> Iterator[Verdict]:
     settings = {'seed': SEED, 'time_limit': 10.0, 'pose_spacing': length / N_POSES}
     with TemporaryDirectory() as folder, _quiet_domain(folder):
         with node_process('planner_node', Path(folder) / 'log', **settings) as planner:
-            caller = _Caller()
+            caller = Caller()
             caller.publish(grid_message(data, RESOLUTION))
             planner.wait_for('map received')
             for goal in (pose(*NOWHERE), pose(*GOAL)):
@@ -101,7 +77,7 @@ def _measure(n_pairs: int) -> Iterator[Verdict]:
             caller.close()
         seen = math.dist(SEEN_START, SEEN_GOAL) / (SEEN_POSES - 1) * (1.0 + 1e-9)
         with node_process('planner_node', Path(folder) / 'seen', pose_spacing=seen) as planner:
-            caller = _Caller()
+            caller = Caller()
             caller.publish(grid_message(np.zeros_like(data), RESOLUTION))
             planner.wait_for('map received')
             yield from _costs(caller, planner.popen.pid, n_pairs)
@@ -126,43 +102,50 @@ def _measure(n_pairs: int) -> Iterator[Verdict]:
     )
 
 
-def _compared(caller: _Caller, goal: PoseStamped, n_pairs: int) -> Iterator[Verdict]:
+def _compared(caller: Caller, goal: PoseStamped, n_pairs: int) -> Iterator[Verdict]:
     """Measure one request; the ready-made path has as many poses as its answer."""
     path, _ = caller.ask(caller.planner, goal)
     n_poses = len(path.poses)
     with _process('benchmarks.ready_made', str(n_poses)):
         for listening in (False, True):
             listener = caller.listener() if listening else None
-            caller.meet_ready_made(goal)
+            caller.meet_ready_made(caller.ready_made, goal)
             pairs = [caller.pair(goal) for _ in range(n_pairs)]
             if listener is not None:
                 listener.destroy_node()
             yield _verdict(n_poses, listening, pairs)
 
 
-def _costs(caller: _Caller, pid: int, n_pairs: int) -> Iterator[Verdict]:
+def _costs(caller: Caller, pid: int, n_pairs: int) -> Iterator[Verdict]:
     """Measure the CPU time of the process ``pid`` for an answer that needs no search."""
     goal = pose(*SEEN_GOAL)
     n_poses = len(caller.ask(caller.planner, goal, start=SEEN_START)[0].poses)
-    with _process('benchmarks.ready_made', str(n_poses)) as ready_made:
-        caller.meet_ready_made(goal)
+    bare = '--ros-args', '-r', f'__ns:={BARE}'
+    with (
+        _process('benchmarks.ready_made', str(n_poses)) as ready_made,
+        _process('benchmarks.ready_made', '1', *bare) as of_one_pose,
+    ):
+        caller.meet_ready_made(caller.ready_made, goal)
+        caller.meet_ready_made(caller.bare, goal)
         for listening in (False, True):
             listener = caller.listener() if listening else None
             costs = [
                 (
                     cost_of(lambda: caller.ask(caller.planner, goal, start=SEEN_START), pid),
                     cost_of(lambda: caller.ask(caller.ready_made, goal), ready_made.pid),
+                    cost_of(lambda: caller.ask(caller.bare, goal), of_one_pose.pid),
                 )
                 for _ in range(n_pairs)
             ]
             if listener is not None:
                 listener.destroy_node()
-            ours, least = (median(times) for times in zip(*costs, strict=True))
+            ours, least, least_of_one = (median(times) for times in zip(*costs, strict=True))
             yield Verdict(
                 f'CPU time of the node for an answer of {n_poses} poses without a search, '
                 f'pictures {"" if listening else "not "}subscribed to',
                 f'{1e3 * MOST_CPU:g} ms, {MOST_CPU_RATIO} x',
-                f'{1e3 * ours:.2f} ms, ready-made {1e3 * least:.2f} ms: {ours / least:.2f} x',
+                f'{1e3 * ours:.2f} ms, ready-made {1e3 * least:.2f} ms: {ours / least:.2f} x; '
+                f'ready-made of one pose {1e3 * least_of_one:.2f} ms',
                 ours <= min(MOST_CPU, MOST_CPU_RATIO * least),
             )
 
@@ -222,101 +205,3 @@ def _process(*module_and_arguments: str) -> Iterator[subprocess.Popen]:
     finally:
         process.kill()  # rclpy's own executors may miss a gentler signal
         process.wait()
-
-
-class _Caller:
-    """Client of both nodes; while it waits for an answer it does nothing that could delay it."""
-
-    def __init__(self) -> None:
-        self._context = Context()
-        rclpy.init(context=self._context)
-        self._node = Node('caller', context=self._context)
-        self._executor = _executor(self._node)
-        self._reader = Node('reader', context=self._context)
-        self._reading = _executor(self._reader)
-        self._maps = self._reader.create_publisher(OccupancyGrid, '/map', LATCHED)
-        self._search_times: dict[tuple[int, int], float] = {}
-        self._reader.create_subscription(
-            DiagnosticArray, '/hnr_planner/outcome', self._read, LATCHED
-        )
-        self.planner = self._node.create_client(GetPlan, '/hnr_planner/plan')
-        self.ready_made = self._node.create_client(GetPlan, f'/{READY_MADE}/plan')
-
-    def close(self) -> None:
-        """End the client, so that nobody gets its map any more."""
-        for node in (self._node, self._reader):
-            node.destroy_node()
-        rclpy.try_shutdown(context=self._context)
-
-    def publish(self, message: OccupancyGrid) -> None:
-        """Publish the map."""
-        self._maps.publish(message)
-
-    def listener(self) -> Node:
-        """Return a node that subscribes to samples and markers, and ignores them."""
-        node = Node('listener', context=self._context)
-        for kind, topic in ((PointCloud2, 'samples'), (MarkerArray, 'markers')):
-            node.create_subscription(kind, f'/hnr_planner/{topic}', _ignore, LATCHED, raw=True)
-        return node
-
-    def meet_ready_made(self, goal: PoseStamped) -> None:
-        """Request the ready-made path until it comes: before discovery ends, answers get lost."""
-        deadline = time.monotonic() + SOON
-        while True:
-            with suppress(TimeoutError):
-                self.ask(self.ready_made, goal, patience=1.0)
-                return
-            if time.monotonic() > deadline:
-                raise TimeoutError('the ready-made path does not come')
-
-    def pair(self, goal: PoseStamped) -> Pair:
-        """Measure both nodes, one after the other."""
-        path, answer = self.ask(self.planner, goal)
-        search = self._search_time(stamp_of(path))
-        time.sleep(PAUSE)
-        _, ready_made = self.ask(self.ready_made, goal)
-        return Pair(answer, search, ready_made)
-
-    def ask(
-        self,
-        client: Client,
-        goal: PoseStamped,
-        patience: float = SOON,
-        start: tuple[float, float] = START,
-    ) -> tuple[PathMessage, float]:
-        """Request a path; return it and the round-trip time [s]."""
-        client.wait_for_service(SOON)
-        request = GetPlan.Request(start=pose(*start), goal=goal)
-        began = time.perf_counter()
-        future = client.call_async(request)
-        # spin_until_future_complete would keep the tasks of all earlier calls.
-        while not future.done() and time.perf_counter() - began < patience:
-            self._executor.spin_once(patience)
-        elapsed = time.perf_counter() - began
-        if not future.done():
-            raise TimeoutError(f'no answer from {client.srv_name}')
-        return future.result().plan, elapsed
-
-    def _search_time(self, stamp: tuple[int, int]) -> float:
-        """Return the time of the search for an answer [s]."""
-        deadline = time.monotonic() + SOON
-        while stamp not in self._search_times:
-            assert time.monotonic() < deadline, 'no outcome for an answer'
-            self._reading.spin_once(SOON)
-        return self._search_times.pop(stamp)
-
-    def _read(self, message: DiagnosticArray) -> None:
-        _, values = read_outcome(message)
-        self._search_times[stamp_of(message)] = float(values['search_time']) + float(
-            values['shortening_time']
-        )
-
-
-def _executor(node: Node) -> SingleThreadedExecutor:
-    executor = SingleThreadedExecutor(context=node.context)
-    executor.add_node(node)
-    return executor
-
-
-def _ignore(_message: bytes) -> None:
-    """Ignore a message."""

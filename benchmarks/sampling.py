@@ -12,14 +12,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-import resource
 from statistics import median
-import subprocess
-import sys
 import time
 from typing import Any, NamedTuple
 import warnings
 
+from benchmarks.imports import imports
 from benchmarks.pinned import on_one_core
 from benchmarks.problems import Floats
 from benchmarks.progress import show
@@ -59,16 +57,6 @@ GRID_AT_LEAST, BALLS_AT_LEAST = 0.45, 0.8
 ESS_DIM, ESS_CHAINS, ESS_DRAWS = 50, 2, 2000
 ESS_THIN = {HIT_AND_RUN: (100, 400), COORDINATE: (50, 100, 200)}
 BILLIARD, BILLIARD_THIN = 'BilliardWalkProposal', (1, 4)
-#: Target: time of the import over that of its two largest libraries.
-IMPORT_AT_MOST = 1.5
-IMPORTS, LIBRARIES = 'from hnr_planner import GridSpace, plan, sample', 'import numba, scipy'
-COUNT_COMPILATIONS = f"""
-from numba.core import event
-with event.install_recorder('numba:compile') as recorder:
-    {IMPORTS}
-print(len(recorder.buffer))
-"""
-
 #: Function that makes ``n_draws`` draws, ``thin`` steps apart: (chains, n_draws, dim).
 Runner = Callable[[int, int], Floats]
 
@@ -246,32 +234,6 @@ def _rate(run: Runner, walk: str, thin: int) -> Rate:
     run(ESS_DRAWS // 10, thin)
     seconds, draws = _timed(lambda: run(ESS_DRAWS, thin))
     return Rate(float(diagnose(draws).ess_bulk.min()) / seconds, walk, thin)
-
-
-def import_time(statement: str, n_times: int) -> float:
-    """Return the median processor time [s] of a statement in a fresh Python."""
-    times = []
-    for _ in range(n_times + 1):
-        before = resource.getrusage(resource.RUSAGE_CHILDREN)
-        subprocess.run([sys.executable, '-c', statement], check=True)
-        after = resource.getrusage(resource.RUSAGE_CHILDREN)
-        times.append(after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime)
-    return median(times[1:])  # the first finds files that nobody has read yet
-
-
-def imports(n_times: int) -> Iterator[Verdict]:
-    """Yield the verdicts on the import of the package."""
-    show(IMPORTS)
-    ours, libraries = import_time(IMPORTS, n_times), import_time(LIBRARIES, n_times)
-    measured = f'{ours:.2f} s against {libraries:.2f} s: {ours / libraries:.2f}'
-    what = f'`{IMPORTS}` against `{LIBRARIES}`'
-    yield Verdict(what, f'{IMPORT_AT_MOST} x', measured, ours <= IMPORT_AT_MOST * libraries)
-    done = subprocess.run(
-        [sys.executable, '-c', COUNT_COMPILATIONS], check=True, capture_output=True, text=True
-    )
-    yield Verdict(
-        f'compilations at `{IMPORTS}`', 'none', done.stdout.strip(), done.stdout == '0\n'
-    )
 
 
 def sampling(bench: Bench) -> Section:

@@ -13,6 +13,8 @@ import shapely
 
 TOUCHES = 1e-8
 """Distance, in cells, up to which a footprint counts as touching a square."""
+HARDLY = 1e-5
+"""Turn [rad] below which a position is a series in the turn, up to its first power."""
 WALL = 3
 """Number of cells of the wall that is built around the map, for the outside is blocked."""
 
@@ -111,15 +113,15 @@ def orbit(pose: ArrayLike, twist: ArrayLike, times: ArrayLike) -> NDArray[np.flo
     """
     Return the poses (k, 3) at ``times`` of a robot that holds a twist.
 
-    A twist that turns goes round a fixed centre.
+    A twist that turns goes round a fixed centre. Where that is so far away that its rounding
+    counts, the position is a series in the turn.
     """
     x, y, yaw = np.asarray(pose, dtype=float)
     vx, vy, omega = np.asarray(twist, dtype=float)
     times = np.asarray(times, dtype=float)
-    cos, sin = np.cos(yaw), np.sin(yaw)
-    if omega == 0.0:
-        ahead = np.outer(times, [vx * cos - vy * sin, vx * sin + vy * cos])
-        return np.column_stack([ahead + (x, y), np.full(len(times), yaw)])
+    if abs(omega) < HARDLY:
+        ahead = np.outer(times, [vx, vy]) + np.outer(omega * times**2 / 2.0, [-vy, vx])
+        return np.column_stack([turned(ahead, yaw, x, y), yaw + omega * times])
     # The centre is where the velocity is zero, at (-vy, vx) / omega in the robot's frame.
     (centre,) = turned(np.array([[-vy, vx]]) / omega, yaw, x, y)
     (away,) = np.array([[x, y]]) - centre

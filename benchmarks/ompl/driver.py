@@ -27,7 +27,7 @@ class MissingOmpl(Exception):
 
 
 class Answer(NamedTuple):
-    """Seconds of setup and solve, and the path (m, 2) in cells, (0, 2) for none."""
+    """Seconds of setup and solve, and the path (m, dim), in cells on grids; (0, dim) for none."""
 
     seconds: float
     path: Floats

@@ -1,5 +1,5 @@
 """
-Arguments that several commands share, their types, and errors of one line.
+The parser of commands, arguments that several of them share, and errors of one line.
 
 Importing this module is fast: the modules of maps and planners, with NumPy, are imported only when
 a map is opened.
@@ -10,29 +10,23 @@ from __future__ import annotations
 import argparse
 from collections.abc import Callable, Iterable, Sequence
 from itertools import takewhile
-import math
 from pathlib import Path
 import re
 import sys
-from typing import Any, NoReturn, Protocol, TYPE_CHECKING, TypeVar
+from typing import Any, NoReturn, Protocol, TYPE_CHECKING
+
+from hnr_planner.cli.argument_types import length, number
 
 if TYPE_CHECKING:
     from hnr_planner.core import GridSpace
     from hnr_planner.maps import OccupancyMap
 
-Number = TypeVar('Number', int, float)
-
 #: Exit code for bad input.
 BAD_INPUT = 2
-#: File name endings of pages and of pictures.
-PAGES = ('.html', '.htm')
-PICTURES = ('.png', '.svg', '.pdf')
 #: The option with which points are poses, and the numbers of a point and of a pose.
 FOOTPRINT, POINT, POSE = '--footprint', ('X', 'Y'), ('X', 'Y', 'YAW')
 #: Numbers in words.
 NUMBER_WORDS = {2: 'two', 3: 'three'}
-#: Names of number types, for messages.
-KINDS = {float: 'number', int: 'whole number'}
 
 
 class Listed(Protocol):
@@ -188,85 +182,6 @@ def listing(entries: Iterable[Listed]) -> str:
 def error_line(message: str) -> str:
     """Return an error message as one line that begins with ``error:``."""
     return 'error: ' + ' '.join(message.split())
-
-
-def bounded(
-    kind: type[Number],
-    *,
-    least: float = -math.inf,
-    above: float = -math.inf,
-    most: float = math.inf,
-) -> Callable[[str], Number]:
-    """
-    Return a function that converts text to a finite number within bounds, for argparse.
-
-    The number is of the type ``kind``, at least ``least``, greater than ``above`` and at most
-    ``most``; for any other text the function raises ArgumentTypeError.
-    """
-
-    def read(text: str) -> Number:
-        try:
-            value = kind(text)
-        except ValueError:
-            raise argparse.ArgumentTypeError(f'{text!r} is not a {KINDS[kind]}') from None
-        if not -math.inf < value < math.inf:
-            raise argparse.ArgumentTypeError(f'{text!r} is not a finite number')
-        if value < least:
-            raise argparse.ArgumentTypeError(f'{text} is less than {least}')
-        if value <= above:
-            raise argparse.ArgumentTypeError(f'{text} is not above {above}')
-        if value > most:
-            raise argparse.ArgumentTypeError(f'{text} is more than {most}')
-        return value
-
-    return read
-
-
-number = bounded(float)
-length = bounded(float, least=0)
-positive = bounded(float, above=0)
-whole = bounded(int, least=0)
-count = bounded(int, least=1, most=10**9)
-
-
-def picture(text: str) -> Path:
-    """
-    Return the path of a picture to write, for argparse.
-
-    ArgumentTypeError is raised where its folder does not exist, it is a folder itself, or its name
-    ends in none of ``PICTURES``.
-    """
-    file = output_file(text)
-    if file.suffix.lower() not in PICTURES:
-        raise argparse.ArgumentTypeError(f'{text!r} does not end in one of {", ".join(PICTURES)}')
-    return file
-
-
-def page(text: str) -> Path:
-    """
-    Return the path of an HTML page to write, for argparse.
-
-    ArgumentTypeError is raised where its folder does not exist, it is a folder itself, or its name
-    ends in none of ``PAGES``.
-    """
-    file = output_file(text)
-    if file.suffix.lower() not in PAGES:
-        raise argparse.ArgumentTypeError(f'{text!r} does not end in one of {", ".join(PAGES)}')
-    return file
-
-
-def output_file(text: str) -> Path:
-    """
-    Return the path of a file to write, for argparse.
-
-    ArgumentTypeError is raised where its folder does not exist, or it is a folder itself.
-    """
-    file = Path(text)
-    if not file.parent.is_dir():
-        raise argparse.ArgumentTypeError(f'there is no folder {str(file.parent)!r}')
-    if file.is_dir():
-        raise argparse.ArgumentTypeError(f'{text!r} is a folder')
-    return file
 
 
 def add_map_arguments(parser: argparse.ArgumentParser) -> None:

@@ -6,7 +6,8 @@ import argparse
 from importlib.util import find_spec
 from pathlib import Path
 
-from hnr_planner.cli.arguments import add_command, BadInputError, keep_map_files, picture
+from hnr_planner.cli.argument_types import picture
+from hnr_planner.cli.arguments import add_command, BadInputError, keep_map_files
 from hnr_planner.cli.extras import require_extra
 
 EPILOG = """\

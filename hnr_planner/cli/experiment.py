@@ -9,7 +9,8 @@ from pathlib import Path
 import sys
 import webbrowser
 
-from hnr_planner.cli.arguments import add_command, count, listing
+from hnr_planner.cli.argument_types import count
+from hnr_planner.cli.arguments import add_command, listing
 from hnr_planner.cli.extras import require_extra
 from hnr_planner.experiments.registry import EXPERIMENTS, load, NAMES
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 import argparse
 from typing import Any, TYPE_CHECKING
 
-from hnr_planner.cli.arguments import BadInputError, length, positive
+from hnr_planner.cli.argument_types import length, positive
+from hnr_planner.cli.arguments import BadInputError
 
 if TYPE_CHECKING:
     from hnr_planner.core import GridSpace, PlanResult, PoseSpace
@@ -23,13 +24,11 @@ NEED_FOOTPRINT = {
 }
 
 
-def add_footprint_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add ``--footprint`` and what goes with it to a command's parser, in a group of their own."""
-    group = parser.add_argument_group(
-        'robots that are not round',
-        'With --footprint a path is one of poses: --start and --goal take X Y YAW\n'
-        '[m, m, rad], and the whole outline is free on all of the way.',
-    )
+def add_footprint_arguments(
+    parser: argparse.ArgumentParser, description: str
+) -> argparse._ArgumentGroup:
+    """Add ``--footprint`` and how the robot drives to a parser, in a group, and return that."""
+    group = parser.add_argument_group('robots that are not round', description)
     group.add_argument(
         '--footprint',
         metavar='"[[X, Y], ...]"',
@@ -55,6 +54,11 @@ def add_footprint_arguments(parser: argparse.ArgumentParser) -> None:
         const=False,
         help='never drive backwards',
     )
+    return group
+
+
+def add_planning_arguments(group: argparse._ArgumentGroup) -> None:
+    """Add what decides between paths of a robot with a footprint to the group of its arguments."""
     group.add_argument(
         '--reverse-penalty',
         type=positive,
@@ -84,8 +88,8 @@ def pose_space(arguments: argparse.Namespace, grid: GridSpace) -> PoseSpace | No
     from hnr_planner.core import PoseSpace
     from hnr_planner.server.robot import outline
 
-    given = {name: getattr(arguments, name) for name in NEED_FOOTPRINT}
-    given = {name: value for name, value in given.items() if value is not None}
+    values: dict[str, Any] = vars(arguments)
+    given = {name: values[name] for name in NEED_FOOTPRINT if values.get(name) is not None}
     vertices = outline(arguments.footprint or '')
     if not vertices:
         for name in given:

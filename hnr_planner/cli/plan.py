@@ -5,22 +5,18 @@ from __future__ import annotations
 import argparse
 from typing import Any
 
+from hnr_planner.cli.argument_types import count, length, page, picture, positive, whole
 from hnr_planner.cli.arguments import (
     add_command,
     add_map_arguments,
-    count,
     keep_map_files,
-    length,
     listing,
     open_map,
-    page,
-    picture,
-    positive,
-    whole,
 )
 from hnr_planner.cli.extras import require_extra
 from hnr_planner.cli.footprint import (
     add_footprint_arguments,
+    add_planning_arguments,
     planning_options,
     pose_space,
 )
@@ -143,7 +139,12 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
         help='write an HTML page that shows how this search unfolds, and how every other '
         'algorithm searches for the same request',
     )
-    add_footprint_arguments(parser)
+    group = add_footprint_arguments(
+        parser,
+        'With --footprint a path is one of poses: --start and --goal take X Y YAW\n'
+        '[m, m, rad], and the whole outline is free on all of the way.',
+    )
+    add_planning_arguments(group)
 
 
 def run(arguments: argparse.Namespace) -> int:

@@ -8,22 +8,19 @@ import secrets
 import sys
 from typing import TextIO, TYPE_CHECKING
 
+from hnr_planner.cli.argument_types import count, output_file, picture, positive, whole
 from hnr_planner.cli.arguments import (
     add_command,
     add_map_arguments,
     BadInputError,
-    count,
     keep_map_files,
     open_map,
-    output_file,
-    picture,
-    positive,
-    whole,
 )
 from hnr_planner.cli.extras import require_extra
+from hnr_planner.cli.footprint import add_footprint_arguments, pose_space
 
 if TYPE_CHECKING:
-    from hnr_planner.core import GridSpace
+    from hnr_planner.core import GridSpace, PoseSpace
     from numpy.typing import NDArray
 
 #: Names of the walks; literal, so that ``--help`` does not import the core. A test compares.
@@ -109,6 +106,11 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
         metavar='FILE.png',
         help='draw map and points, coloured in their order',
     )
+    add_footprint_arguments(
+        parser,
+        'With --footprint the points are poses X Y YAW [m, m, rad] at which the whole outline is\n'
+        'free, by a walk along the motions of the robot; --start is a pose, and needed.',
+    )
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -123,10 +125,11 @@ def run(arguments: argparse.Namespace) -> int:
         raise BadInputError(f'--csv and --plot both name {arguments.csv}: choose another name')
     if arguments.plot:
         require_extra('plot', '--plot')
-    occupancy, space = open_map(arguments)
+    occupancy, grid = open_map(arguments)
+    space = pose_space(arguments, grid)
     keep_map_files(arguments.map, arguments.csv, arguments.plot)
     seed = secrets.randbelow(2**31) if arguments.seed is None else arguments.seed
-    chains = _draw(arguments, space, seed)
+    chains = _draw(arguments, grid if space is None else space, seed)
     if arguments.diagnose:
         print(diagnose(chains).message, file=sys.stderr)
 
@@ -138,9 +141,9 @@ def run(arguments: argparse.Namespace) -> int:
 
         figure = drawing.figure_of_samples(
             occupancy,
-            chains.reshape(-1, 2),
+            chains.reshape(-1, chains.shape[2])[:, :2],
             title=f'{arguments.walk}: {_how_many(arguments)}, seed {seed}',
-            blocked=space.blocked,
+            blocked=grid.blocked if space is None else grid.uninflated,
         )
         drawing.save(figure, arguments.plot)
     if not (arguments.csv or arguments.plot):
@@ -151,9 +154,9 @@ def run(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def _draw(arguments: argparse.Namespace, space: GridSpace, seed: int) -> NDArray:
-    """Return the requested chains of points (n_chains, n, 2) [m]."""
-    from hnr_planner.core import BallWalk, sample, sample_free_space, SpaceError
+def _draw(arguments: argparse.Namespace, space: GridSpace | PoseSpace, seed: int) -> NDArray:
+    """Return the requested chains of points (n_chains, n, 2) [m], or of poses (n_chains, n, 3)."""
+    from hnr_planner.core import BallWalk, PoseSpace, sample, sample_free_space, SpaceError
 
     if arguments.radius is not None and arguments.walk != BallWalk.name:
         raise BadInputError(f'--radius is for --walk {BallWalk.name} only')
@@ -166,6 +169,8 @@ def _draw(arguments: argparse.Namespace, space: GridSpace, seed: int) -> NDArray
     }
     if arguments.start is not None:
         return sample(space, arguments.start, arguments.n, **settings)
+    if isinstance(space, PoseSpace):
+        raise BadInputError('--footprint needs --start X Y YAW')
     try:
         return sample_free_space(space, arguments.n, **settings).points
     except SpaceError as error:
@@ -180,19 +185,20 @@ def _how_many(arguments: argparse.Namespace) -> str:
 
 def write_csv(chains: NDArray, file: TextIO) -> None:
     """
-    Write chains (n_chains, n, 2) [m] as CSV, one line for each point, with all digits.
+    Write chains (n_chains, n, 2) or (n_chains, n, 3) as CSV, one line for each point or pose.
 
-    Several chains have a third column: the number of the point's chain, from 0.
+    All digits are written. Several chains have a last column: the number of the chain, from 0.
     """
+    names = ['x', 'y', 'yaw'][: chains.shape[2]]
     if len(chains) == 1:
-        file.write('x,y\n')
-        file.writelines(f'{x!r},{y!r}\n' for x, y in _numbers(chains[0]))
+        file.write(','.join(names) + '\n')
+        file.writelines(f'{row}\n' for row in _rows(chains[0]))
         return
-    file.write('x,y,chain\n')
+    file.write(','.join([*names, 'chain']) + '\n')
     for k, chain in enumerate(chains):
-        file.writelines(f'{x!r},{y!r},{k}\n' for x, y in _numbers(chain))
+        file.writelines(f'{row},{k}\n' for row in _rows(chain))
 
 
-def _numbers(points: NDArray) -> Iterator[tuple[float, float]]:
-    """Yield the points of an array (n, 2) as pairs of Python floats."""
-    return ((float(x), float(y)) for x, y in points)
+def _rows(points: NDArray) -> Iterator[str]:
+    """Yield the numbers of each point of an array (n, dim) as text, separated by commas."""
+    return (','.join(map(repr, point)) for point in points.tolist())

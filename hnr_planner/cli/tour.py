@@ -7,14 +7,13 @@ import json
 import math
 from typing import TYPE_CHECKING
 
+from hnr_planner.cli.argument_types import number, picture
 from hnr_planner.cli.arguments import (
     add_command,
     add_map_arguments,
     BadInputError,
     keep_map_files,
-    number,
     open_map,
-    picture,
 )
 from hnr_planner.cli.extras import require_extra
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 import argparse
 from importlib.util import find_spec
 
-from hnr_planner.cli.arguments import add_command, BadInputError, bounded
+from hnr_planner.cli.argument_types import bounded
+from hnr_planner.cli.arguments import add_command, BadInputError
 from hnr_planner.cli.extras import require_extra
 
 EPILOG = """\

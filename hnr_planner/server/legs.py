@@ -19,6 +19,7 @@ from hnr_planner.core import (
     TrajectoryResult,
 )
 from hnr_planner.core.planning.planner import Planner
+from hnr_planner.server.kept_route import Route
 from hnr_planner.server.limits import RequestLimits
 from hnr_planner.server.map_store import MapSnapshot
 from hnr_planner.server.orientations import quaternion_of
@@ -33,11 +34,10 @@ from hnr_planner.server.times import Times
 from hnr_planner.server.trajectories import trajectory_path
 from hnr_planner.server.waypoints import joined
 from hnr_planner.server.zone_exits import led_out, zone_exit
-import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 PlannerFor = Callable[[str, MapSnapshot], str | Planner]
-LastPath = Callable[[PlanRequest], NDArray[np.float64] | None]
+LastRouteOf = Callable[[PlanRequest], Route | None]
 
 
 @dataclass(frozen=True)
@@ -55,8 +55,8 @@ class LegPlanner:
         Times of the phases of the request, to which planning adds.
     planner_for : callable
         Returns the planner for the name of an algorithm and a map.
-    last_path : callable
-        Returns the last path (m, 2) [m] to the goal of a request, or None.
+    last_route : callable
+        Returns the last route to the goal of a request, or None.
 
     """
 
@@ -64,7 +64,7 @@ class LegPlanner:
     limits: RequestLimits
     times: Times
     planner_for: PlannerFor
-    last_path: LastPath
+    last_route: LastRouteOf
 
     def plan(self, request: PlanRequest, snapshot: MapSnapshot) -> PlanResponse:
         """
@@ -132,33 +132,39 @@ class LegPlanner:
 
         ``n_paths`` is the number of alternatives, by default that of the parameters.
         """
-        arguments = self.settings.plan_arguments
-        if n_paths is not None:
-            arguments['alternatives'] = n_paths
-        start, exit_point = request.start.point, zone_exit(request, snapshot)
         try:
             if snapshot.pose_space is not None:
                 return self._plan_poses(request, snapshot, snapshot.pose_space)
             if request.has_inertia:
                 return self._plan_trajectory(request, snapshot)
-            result = plan(
-                snapshot.space,
-                start if exit_point is None else exit_point,
-                request.goal.point,
-                algorithm=self.planner_for(request.algorithm, snapshot),
-                goal_tolerance=request.tolerance,
-                time_limit=self.limits.time_left,
-                cancel=self.limits.cancel,
-                **arguments,
-            )
+            return self._plan_path(request, snapshot, n_paths)
         except RequestError as error:
             raise Refusal(Outcome.BAD_REQUEST, str(error)) from error
+
+    def _plan_path(
+        self, request: PlanRequest, snapshot: MapSnapshot, n_paths: int | None
+    ) -> PlanResponse:
+        """Plan for a robot that is a circle and has no inertia."""
+        arguments = self.settings.plan_arguments
+        if n_paths is not None:
+            arguments['alternatives'] = n_paths
+        start, exit_point = request.start.point, zone_exit(request, snapshot)
+        result = plan(
+            snapshot.space,
+            start if exit_point is None else exit_point,
+            request.goal.point,
+            algorithm=self.planner_for(request.algorithm, snapshot),
+            goal_tolerance=request.tolerance,
+            time_limit=self.limits.time_left,
+            cancel=self.limits.cancel,
+            **arguments,
+        )
         self.times.add_planning(result)
         if exit_point is not None:
             result = led_out(result, start, exit_point)
         with self.times.phase('shortening'):
             result, route = keep_route(
-                result, self.last_path(request), snapshot.space, self.settings, self.limits
+                result, self.last_route(request), snapshot.space, self.settings, self.limits
             )
         return PlanResponse(
             Outcome[result.status.name],

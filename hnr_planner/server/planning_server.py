@@ -7,7 +7,7 @@ import traceback
 from typing import TypeVar
 
 from hnr_planner.core.planning.planner import Planner
-from hnr_planner.server.kept_route import LastRoute
+from hnr_planner.server.kept_route import LastRoutes
 from hnr_planner.server.map_store import MapSnapshot
 from hnr_planner.server.outcomes import Outcome, Refusal
 from hnr_planner.server.requests import PlanRequest
@@ -54,7 +54,7 @@ class PlanningServer:
         self.searches = RunningSearches()
         self.statistics = Statistics()
         self.roadmaps = Roadmaps(report_defect)
-        self.last_route = LastRoute()
+        self.last_routes = LastRoutes()
 
     def plan(
         self,
@@ -78,12 +78,12 @@ class PlanningServer:
                 self._to_frame,
                 arrived,
                 self._planner_for,
-                self.last_route.of,
+                self.last_routes.of,
             ),
             lambda refusal: PlanResponse(refusal.outcome, refusal.why, request),
         )
         if response.solved and settings.keep_route > 0.0 and not response.request.via:
-            self.last_route.remember(response.request, response.path)
+            self.last_routes.remember(response.request, response.path)
         return response
 
     def follow_map(self) -> None:
@@ -96,9 +96,9 @@ class PlanningServer:
             self.roadmaps.follow(self._newest_map())
 
     def forget_map(self) -> None:
-        """Forget the roadmap and the last route."""
+        """Forget the roadmap and the last routes."""
         self.roadmaps.forget()
-        self.last_route.forget()
+        self.last_routes.forget()
 
     def _planner_for(self, algorithm: str, snapshot: MapSnapshot) -> str | Planner:
         """Return the roadmap of a map for the algorithm auto, if it is ready; else the name."""

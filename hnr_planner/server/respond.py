@@ -16,7 +16,7 @@ from hnr_planner.core import PoseSpace
 from hnr_planner.core.kernels.kernel import interpreted_calls
 from hnr_planner.core.planning.escape import escape_point
 from hnr_planner.core.planning.tiers import remark_since, tier_since
-from hnr_planner.server.legs import LastPath, LegPlanner, PlannerFor
+from hnr_planner.server.legs import LastRouteOf, LegPlanner, PlannerFor
 from hnr_planner.server.limits import RequestLimits
 from hnr_planner.server.map_store import MapSnapshot
 from hnr_planner.server.outcomes import Outcome, Refusal
@@ -57,8 +57,8 @@ def planner_by_name(algorithm: str, _snapshot: MapSnapshot) -> str:
     return algorithm
 
 
-def no_last_path(_request: PlanRequest) -> None:
-    """Return None: there is no last path."""
+def no_last_route(_request: PlanRequest) -> None:
+    """Return None: there is no last route."""
 
 
 def respond(
@@ -69,7 +69,7 @@ def respond(
     to_frame: ToFrame = only_same_frame,
     arrived: float | None = None,
     planner_for: PlannerFor = planner_by_name,
-    last_path: LastPath = no_last_path,
+    last_route: LastRouteOf = no_last_route,
 ) -> PlanResponse:
     """
     Plan for ``request`` and return a response that says how planning ended.
@@ -93,8 +93,8 @@ def respond(
         When the request arrived, by ``time.monotonic`` [s]; now when left out.
     planner_for : callable
         Returns the planner for the name of an algorithm and a map.
-    last_path : callable
-        Returns the last path (m, 2) [m] to the goal of a request, or None.
+    last_route : callable
+        Returns the last route to the goal of a request, or None.
 
     """
     arrived = time.monotonic() if arrived is None else arrived
@@ -105,7 +105,7 @@ def respond(
         check_request(request)
         with times.phase('map'):
             snapshot = wait_for_map(newest_map, settings.patience, cancel)
-        legs = LegPlanner(settings, limits, times, planner_for, last_path)
+        legs = LegPlanner(settings, limits, times, planner_for, last_route)
         job = _Job(settings, newest_map, to_frame, limits, times, legs)
         response = job.plan_for_newest_map(request, snapshot)
     except Refusal as refusal:

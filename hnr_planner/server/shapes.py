@@ -1,5 +1,6 @@
 """Shapes that show a search to people: points, lines and balls in the map's frame."""
 
+from collections.abc import Sequence
 import enum
 from typing import NamedTuple
 
@@ -38,7 +39,8 @@ class Shape(NamedTuple):
     Attributes
     ----------
     name : str
-        What the shape shows: 'samples', 'tree', 'path', 'footprint', 'start' or 'goal'.
+        What the shape shows: 'samples', 'tree', 'alternatives', 'path', 'footprint', 'start' or
+        'goal'.
     kind : Kind
         How the points are drawn.
     size : float
@@ -58,8 +60,9 @@ def search_shapes(response: PlanResponse) -> list[Shape]:
     """
     Return the shapes of samples, tree, path, start and goal of a solved request.
 
-    With a footprint, its outlines along the path are one more shape. None after a failure.
-    Samples, edges and path vertices are thinned to ``MOST_POINTS`` points in each shape.
+    Further paths, where there are any, are one shape; with a footprint, its outlines along the
+    path are another. None after a failure. Samples, edges and path vertices are thinned to
+    ``MOST_POINTS`` points in each shape.
     """
     if not response.solved or response.result is None or response.snapshot is None:
         return []
@@ -67,6 +70,7 @@ def search_shapes(response: PlanResponse) -> list[Shape]:
     request = response.request
     return [
         *_result_shapes(response, response.result, cell),
+        *_other_paths(response.others, cell),
         *_footprint_shapes(response, cell),
         Shape('start', Kind.BALL, 4.0 * cell, np.array([request.start.point])),
         Shape('goal', Kind.BALL, 4.0 * cell, np.array([request.goal.point])),
@@ -90,6 +94,14 @@ def _result_shapes(response: PlanResponse, result: SearchResult, cell: float) ->
         Shape('tree', Kind.PAIRS, cell / 4.0, edges),
         Shape('path', Kind.LINE, cell, path),
     ]
+
+
+def _other_paths(paths: Sequence[NDArray[np.float64]], cell: float) -> list[Shape]:
+    """Return the shape of the alternatives to a path, if there are any."""
+    segments = [np.repeat(path, 2, axis=0)[1:-1] for path in paths]
+    if not segments:
+        return []
+    return [Shape('alternatives', Kind.PAIRS, cell / 2.0, np.vstack(segments)[:MOST_POINTS])]
 
 
 def _footprint_shapes(response: PlanResponse, cell: float) -> list[Shape]:

@@ -59,7 +59,6 @@ class Searches:
 
     def __init__(self) -> None:
         self._numbers = count()
-        self._shown = -1
         self._waiting: OrderedDict[Stamp, Search] = OrderedDict()
 
     def add_outcome(
@@ -85,11 +84,9 @@ class Searches:
         return self._waiting[stamp]
 
     def _if_new(self, search: Search) -> Search | None:
-        """Return a request whose messages are complete now, unless a newer one was shown."""
-        if not search.is_complete or search.number <= self._shown:
+        """Return a request whose messages are complete now; forget it, and what came before it."""
+        if not search.is_complete:
             return None
-        self._shown = search.number
-        # What came before is never shown any more.
         for stamp, other in list(self._waiting.items()):
             if 0 <= other.number <= search.number:
                 del self._waiting[stamp]

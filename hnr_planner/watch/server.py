@@ -50,7 +50,7 @@ def application(hub: Hub, title: str, token: str | None, plan: Planning | None) 
         Plans where a page was clicked; None where pages are to look at only.
 
     """
-    state: dict[str, object] = {
+    state: dict[str, Any] = {
         'live': True,
         'requests': plan is not None,
         'map': None,

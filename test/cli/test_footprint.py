@@ -58,6 +58,24 @@ def test_summary_and_picture_show_the_footprint(
     check_picture(file, drawing.PATH, '#' + ''.join(f'{round(255 * part):02x}' for part in tint))
 
 
+def test_poses_that_are_drawn_are_free(
+    run: Run, rooms: OccupancyMap, rooms_file: Path, tmp_path: Path
+) -> None:
+    start, file = (*at(rooms, 8, 8), 0.4), tmp_path / 'poses.png'
+    options = ('--n', 200, '--chains', 2, '--seed', 1, *FOOTPRINT)
+    ran = run('sample', rooms_file, '--start', *start, *options)
+    assert ran.code == 0, ran.err
+    lines = ran.out.splitlines()
+    assert lines[0] == 'x,y,yaw,chain' and len(lines) == 401
+    poses = np.array([line.split(',')[:3] for line in lines[1:]], dtype=float)
+    assert PoseChecker(rooms.data > 0, 0.1, rooms.origin, VERTICES).is_free(poses).all()
+    assert np.ptp(poses, axis=0).min() > 2.0
+    assert run('sample', rooms_file, '--start', *start, *options, '--plot', file).code == 0
+    check_picture(file)
+    ran = run('sample', rooms_file, *options)
+    assert ran.code == 2 and '--footprint needs --start X Y YAW' in ran.err
+
+
 def test_sweep_is_drawn_where_the_footprint_is(rooms: OccupancyMap) -> None:
     figure = Figure(figsize=(8, 4))
     axes = figure.subplots()

@@ -13,7 +13,7 @@ import json
 import math
 from pathlib import Path
 import re
-from test.browser import ActionChains, BrowserPage, By, Keys, open_browser
+from test.browser import ActionChains, BrowserPage, Keys, open_browser
 from test.cli.conftest import at, OFFICE, Ran
 from typing import Any
 
@@ -340,8 +340,14 @@ def test_a_robot_with_a_footprint_moves_along_its_path(
     # So that the page can interpolate them: no jump by a whole turn.
     assert np.abs(np.diff(poses, axis=0)).max() <= 0.1 + 1e-9
     page = Page(browser, file)
-    layers = [box.get_attribute('name') for box in browser.find_elements(By.NAME, 'footprint')]
-    assert layers == ['footprint'] and not browser.find_elements(By.NAME, 'detours')
+    names = '[...document.querySelectorAll("#layers input")].map((box) => box.name)'
+    assert browser.execute_script(f'return {names}') == [
+        'footprint',
+        'samples',
+        'tree',
+        'chord',
+        'path',
+    ]
     page.pause()
     for layer in ('samples', 'tree', 'chord', 'path'):
         page.find(f'#layers [name="{layer}"]').click()

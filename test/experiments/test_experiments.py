@@ -15,9 +15,14 @@ import numpy as np
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
+#: Experiments whose many walks are compiled for them alone; test_mixing.py has their parts.
+LONG = ('mixing',)
 
 
-@pytest.mark.parametrize('name', NAMES)
+@pytest.mark.parametrize(
+    'name',
+    [pytest.param(name, marks=[pytest.mark.sweep] * (name in LONG)) for name in NAMES],
+)
 def test_every_experiment_runs_and_repeats_itself(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

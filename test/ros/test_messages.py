@@ -7,7 +7,7 @@ from test.ros.harness import points_in, set_field
 
 from builtin_interfaces.msg import Time
 from geometry_msgs.msg import Quaternion, Transform, Vector3
-from hnr_planner.core import GridSpace, plan
+from hnr_planner.core import GridSpace, plan, PlanResult
 from hnr_planner.core.systems import DoubleIntegrator, Trajectory
 from hnr_planner.maps import OccupancyMap
 from hnr_planner.ros.messages.cdr import with_elements
@@ -301,6 +301,17 @@ def test_markers_show_samples_tree_path_and_ends() -> None:
     assert points_of(by_name['path']).tolist() == response.path.tolist()
     assert by_name['goal'].pose.position.x == response.path[-1][0]
     assert all(shape.header.stamp == STAMP for shape in (first, *shapes))
+
+
+def test_markers_show_the_segments_of_all_alternatives() -> None:
+    response = response_on_a_map()
+    assert isinstance(response.result, PlanResult)
+    others = tuple(np.random.default_rng(0).normal(size=(n, 2)) for n in (3, 2))
+    response = replace(response, result=replace(response.result, others=others))
+    (marker,) = (one for one in markers_of(response) if one.ns == 'alternatives')
+    assert marker.type == Marker.LINE_LIST
+    segments = [[*others[0][:2]], [*others[0][1:]], [*others[1]]]
+    assert np.array_equal(points_of(marker), np.vstack(segments))
 
 
 def test_markers_are_capped() -> None:

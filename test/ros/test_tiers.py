@@ -11,6 +11,7 @@ import shutil
 from test.ros.harness import Client, grid_message, node_process, NodeProcess, points_of, pose
 from test.ros.rooms import DATA, GOAL, ORIGIN, RESOLUTION, START
 import time
+from typing import Any
 
 from hnr_planner.core.kernels.cache_folder import cache_folder
 from hnr_planner.core.kernels.modes import VARIABLE
@@ -24,16 +25,18 @@ PATIENCE = 3600.0
 MISSING = '_components_of_ends'
 #: No clock cuts anything here, so the same seed gives the same path.
 SETTINGS = {'time_limit': PATIENCE, 'optimize_for': 0.0, 'seed': 7}
+#: A search that needs few kernels.
+SIMPLE = {'algorithm': 'rrt_connect', 'simplify': False}
 
 
 @contextmanager
 def node_with_cache(
-    monkeypatch: pytest.MonkeyPatch, home: Path, log: Path
+    monkeypatch: pytest.MonkeyPatch, home: Path, log: Path, **settings: Any
 ) -> Iterator[tuple[NodeProcess, Client]]:
     """Run a node that compiles in the background into a cache of its own, and a client of it."""
     monkeypatch.setenv(VARIABLE, 'auto')
     monkeypatch.setenv('NUMBA_CACHE_DIR', str(home))
-    with node_process('planner_node', log, **SETTINGS) as planner:
+    with node_process('planner_node', log, **SETTINGS, **settings) as planner:
         client = Client()
         try:
             client.publish_map(grid_message(DATA, RESOLUTION, ORIGIN))
@@ -71,7 +74,8 @@ def lines(planner: NodeProcess, words: str) -> list[str]:
 def test_node_without_machine_code_serves_before_it_is_compiled(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    with node_with_cache(monkeypatch, tmp_path / 'cache', tmp_path / 'log') as (planner, client):
+    cache, log = tmp_path / 'cache', tmp_path / 'log'
+    with node_with_cache(monkeypatch, cache, log, **SIMPLE) as (planner, client):
         first, values = solved(client)
         assert values['tier'] == 'interpreted'
         # What the request has asked for comes first, long before all the rest.

@@ -196,6 +196,7 @@ def test_another_viewer_sees_the_same_at_once(page: LivePage, site: str, client:
     assert seen['node'] == {'kind': 'node', 'name': '/hnr_planner', 'runs': True, 'blobs': []}
 
 
+@pytest.mark.usefixtures('site')  # it brings the map
 def test_a_page_outlives_nodes_and_ends_with_the_node_that_serves_it(
     browser: Any, tmp_path: Path
 ) -> None:
@@ -207,7 +208,12 @@ def test_a_page_outlives_nodes_and_ends_with_the_node_that_serves_it(
     with watching('--node', 'robot/hnr_planner', '--map', '/map') as address:
         page = LivePage(browser, address)
         page.wait(lambda: page.text('#state') == gone)
-        with node_process('planner_node', tmp_path / 'first', 'map received', *arguments):
+        taken = int(address.rstrip('/').rpartition(':')[2])
+        parameters = {'watch_port': taken}
+        with node_process(
+            'planner_node', tmp_path / 'first', 'map received', *arguments, **parameters
+        ) as first:
+            first.wait_for(f'watch_port: error: port {taken} of 127.0.0.1 cannot be served')
             page.wait(lambda: page.text('#state') == runs)
             robot = Client('/robot/hnr_planner')
             robot.plan(pose(*START), pose(*GOAL))

@@ -52,6 +52,13 @@ async def receive(page: WebSocketClientConnection) -> tuple[dict[str, Any], list
     return read(message)
 
 
+async def until(condition: Callable[[], bool]) -> None:
+    """Wait until a condition holds, or fail."""
+    async with asyncio.timeout(PATIENCE):
+        while not condition():
+            await asyncio.sleep(0.01)
+
+
 def ask(page: WebSocketClientConnection, **request: Any) -> None:
     page.write_message(json.dumps(request))
 
@@ -159,8 +166,7 @@ def test_there_is_listening_while_somebody_looks() -> None:
         assert site.watched == [True]
         for page in pages:
             page.close()
-        while len(site.watched) < 2:
-            await asyncio.sleep(0.01)
+        await until(lambda: len(site.watched) > 1)
         assert site.watched == [True, False]
 
 
@@ -214,8 +220,7 @@ def test_a_click_plans_one_request_at_a_time() -> None:
         ask(page, kind='plan', start=[1, 2], goal=[3, 4])
         assert 'still runs' in (await receive(page))[0]['why']
         ask(other, kind='plan', start=[5, 6], goal=[7, 8])
-        while len(asked) < 2:
-            await asyncio.sleep(0.01)
+        await until(lambda: len(asked) == 2)
         assert [request[:2] for request in asked] == [
             ((1.0, 2.5), (-3.0, 4.0)),
             ((5.0, 6.0), (7.0, 8.0)),
@@ -223,8 +228,7 @@ def test_a_click_plans_one_request_at_a_time() -> None:
         asked[0][2]('the node has ended')
         assert (await receive(page))[0]['why'] == 'the node has ended'
         ask(page, kind='plan', start=[1, 2], goal=[3, 4])
-        while len(asked) < 3:
-            await asyncio.sleep(0.01)
+        await until(lambda: len(asked) == 3)
 
 
 @pytest.mark.parametrize(

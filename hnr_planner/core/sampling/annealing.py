@@ -13,7 +13,8 @@ from typing import Any, NamedTuple
 from hnr_planner.core.checks import check_count, check_positive, check_seed, Floats, Seed
 from hnr_planner.core.errors import RequestError
 from hnr_planner.core.kernels.streams import stream
-from hnr_planner.core.sampling.chains import begin_chains, new_chain, run_chain
+from hnr_planner.core.sampling.chain import new_chain, run_chain
+from hnr_planner.core.sampling.chains import begin_chains
 from hnr_planner.core.sampling.density_steps import CompiledDensity
 from hnr_planner.core.sampling.walks import HitAndRunWalk
 from hnr_planner.core.spaces.space import Space

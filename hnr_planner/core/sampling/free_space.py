@@ -16,7 +16,7 @@ from hnr_planner.core.checks import check_count, check_seed, Floats, Seed
 from hnr_planner.core.errors import RequestError, SpaceError
 from hnr_planner.core.kernels.modes import in_this_mode
 from hnr_planner.core.kernels.streams import Stream, stream, uniform
-from hnr_planner.core.sampling.chains import new_chain, run_chain
+from hnr_planner.core.sampling.chain import new_chain, run_chain
 from hnr_planner.core.sampling.walks import make_walk, Walk
 from hnr_planner.core.spaces.grid.grid_space import GridSpace
 import numpy as np

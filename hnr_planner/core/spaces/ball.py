@@ -41,6 +41,17 @@ class BallData(NamedTuple):
     radii: Floats
     max_gap: float
 
+    @property
+    def boxes(self) -> tuple[Floats, Floats]:
+        """Lower and upper corners (k, dim) of boxes around the balls."""
+        radii = self.radii[:, np.newaxis]
+        return self.centres - radii, self.centres + radii
+
+    @property
+    def tree_from(self) -> int:
+        """Number of balls from which a tree over them makes chords faster (measured)."""
+        return 128
+
 
 class BallSpace(Space):
     """

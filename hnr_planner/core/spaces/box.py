@@ -38,6 +38,16 @@ class BoxData(NamedTuple):
     upper: Floats
     max_gap: float
 
+    @property
+    def boxes(self) -> tuple[Floats, Floats]:
+        """Lower and upper corners (k, dim) of the boxes."""
+        return self.lower, self.upper
+
+    @property
+    def tree_from(self) -> int:
+        """Number of boxes from which a tree over them makes chords faster (measured)."""
+        return 24
+
 
 class BoxSpace(Space):
     """
@@ -127,6 +137,8 @@ def _piece_span(boxes, k, x, u, closed):
         elif u[i] < 0.0:
             first, last = max(first, above / u[i]), min(last, below / u[i])
         elif not (below < 0.0 < above or (closed and below <= 0.0 <= above)):
+            return math.inf, -math.inf
+        if first > last:
             return math.inf, -math.inf
     if first < last or (closed and first == last):
         return first, last

@@ -5,7 +5,9 @@ A compiled space of convex pieces is the union of one or more pieces of one kind
 Each of its arrays has one row for each piece, and its last field, ``max_gap``, is the longest gap
 between two pieces that counts as free: a ray passes over it. A type decorated with ``convex``
 registers kernels for ``count_pieces``, ``piece_contains`` and ``piece_span``, from which the
-primitives of this module are computed.
+primitives of this module are computed. It has a property ``boxes``, the lower and the upper
+corners (k, dim) of boxes around the pieces, and ``tree_from``, the number of pieces from which a
+tree over these boxes makes chords faster.
 """
 
 from collections.abc import Sequence
@@ -51,6 +53,17 @@ def piece_span(
     raise NotImplementedError
 
 
+@dispatched
+@kernel
+def span_end_at(space: CompiledSpace, x: Floats, u: Floats, s: float) -> float:
+    """
+    Return the largest end of the intervals of the line in the pieces that contain ``x + s u``.
+
+    It is ``s`` itself where no piece contains that point.
+    """
+    raise NotImplementedError
+
+
 def convex(data_type: DataType) -> DataType:
     """
     Register the primitives for NamedTuples of ``data_type``, whose pieces are convex.
@@ -60,10 +73,13 @@ def convex(data_type: DataType) -> DataType:
     for primitive, answer in (
         (primitives.contains, _contains),
         (primitives.touches, _touches),
-        (primitives.first_exit, _first_exit),
+        (primitives.first_exit, first_exit_of_pieces),
         (primitives.first_entry, _first_entry),
         (primitives.chord, _chord),
         (primitives.gap, _gap),
+        (primitives.segment_is_free, _segment_is_free),
+        (primitives.line_touches, _line_touches),
+        (span_end_at, _span_end_at),
     ):
         primitive.register(data_type)(answer)
     return data_type
@@ -106,29 +122,34 @@ def _any_contains(space, x, closed):
 
 
 @kernel
-def _first_exit(space, x, u, t, horizon):
+def first_exit_of_pieces(space, x, u, t, horizon):
     """
     Return the first parameter from ``t`` on at which the line leaves the union of the pieces.
 
-    From the end of a piece that contains the line at ``t``, the line is followed on as long as a
+    From the end of the pieces that contain the line at ``t``, the line is followed on as long as a
     piece contains the point ``max_gap`` beyond that end.
     """
-    s = t
-    for k in range(count_pieces(space)):
-        lower, upper = piece_span(space, k, x, u, False)
-        if lower < t < upper:
-            s = max(s, upper)
+    s = span_end_at(space, x, u, t)
     if s == t or count_pieces(space) == 1:
         return s
     max_gap = space.max_gap / norm(u)
-    continues = True
-    while continues and s <= horizon:
-        continues = False
-        for k in range(count_pieces(space)):
-            lower, upper = piece_span(space, k, x, u, False)
-            if lower < s + max_gap < upper:
-                s, continues = upper, True
+    while s <= horizon:
+        end = span_end_at(space, x, u, s + max_gap)
+        if end == s + max_gap:
+            break
+        s = end
     return s
+
+
+@kernel
+def _span_end_at(space, x, u, s):
+    """Return the largest end of the pieces that contain ``x + s u``; ``s`` where none does."""
+    end = s
+    for k in range(count_pieces(space)):
+        lower, upper = piece_span(space, k, x, u, False)
+        if lower < s < upper:
+            end = max(end, upper)
+    return end
 
 
 @kernel
@@ -140,6 +161,27 @@ def _first_entry(space, x, u, t):
         if t <= upper:
             first = min(first, max(t, lower))
     return first
+
+
+@kernel
+def _segment_is_free(space, a, b):
+    """Return whether the segment from ``a`` to ``b`` is in the union of the pieces."""
+    if not (_any_contains(space, a, False) and _any_contains(space, b, False)):
+        return False
+    if count_pieces(space) == 1:  # which is convex
+        return True
+    u = b - a
+    return not u.any() or first_exit(space, a, u, 0.0, 1.0) > 1.0
+
+
+@kernel
+def _line_touches(space, x, u, end):
+    """Return whether the line touches a piece at a parameter from 0 to ``end``."""
+    for k in range(count_pieces(space)):
+        lower, upper = piece_span(space, k, x, u, True)
+        if lower <= end and upper >= 0.0:
+            return True
+    return False
 
 
 @kernel

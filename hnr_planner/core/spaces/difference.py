@@ -19,9 +19,12 @@ from hnr_planner.core.spaces.primitives import (
     chord,
     component,
     contains,
+    exit_beyond,
     first_entry,
     first_exit,
     gap,
+    line_touches,
+    segment_is_free,
     touches,
 )
 from hnr_planner.core.spaces.space import Space
@@ -169,6 +172,32 @@ def _chord(difference, x, u, back):
     lower, upper = chord(difference.base, x, u, back)
     first, last = gap(difference.removed, x, u, back)
     return max(lower, first), min(upper, last)
+
+
+@segment_is_free.register(DifferenceData)
+@kernel
+def _segment_is_free(difference, a, b):
+    """
+    Return whether the segment from ``a`` to ``b`` is free in the base and touches nothing removed.
+
+    Where the line touches something a rounding beyond an end, the end itself decides.
+    """
+    if not segment_is_free(difference.base, a, b):
+        return False
+    u = b - a
+    if u.any() and line_touches(difference.removed, a, u, 1.0):
+        return False
+    return not (touches(difference.removed, a) or touches(difference.removed, b))
+
+
+@exit_beyond.register(DifferenceData)
+@kernel
+def _exit_beyond(difference, x, u, t):
+    """Return the exit of the ray if it is beyond ``t``; else a value up to ``t``."""
+    end = first_exit(difference.base, x, u, 0.0, math.inf)
+    if end <= t or (t > 0.0 and line_touches(difference.removed, x, u, t)):
+        return 0.0
+    return min(end, first_entry(difference.removed, x, u, 0.0))
 
 
 @component.register(DifferenceData)

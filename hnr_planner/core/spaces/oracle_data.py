@@ -15,6 +15,7 @@ from hnr_planner.core.spaces.bounds import box_span
 from hnr_planner.core.spaces.callbacks import address, ask, callback, OracleError
 from hnr_planner.core.spaces.primitives import (
     contains,
+    exit_beyond,
     first_entry,
     first_exit,
     segment_is_free,
@@ -148,8 +149,8 @@ def _segment_is_free(oracle, a, b):
     """
     Return whether the segment from ``a`` to ``b`` is free.
 
-    The function of two points is called if there is one; otherwise both ends have to be free, and
-    the exit of the line from ``a`` has to lie beyond ``b``.
+    The function of two points is called if there is one, or that of chords; otherwise both ends
+    and all points tested between them have to be free.
     """
     if oracle.motion != 0:
         n = len(a)
@@ -159,10 +160,43 @@ def _segment_is_free(oracle, a, b):
         if ask(oracle.motion, ends, answer) != 0:
             raise OracleError
         return answer[0] != 0.0
-    if not (_contains(oracle, a) and _contains(oracle, b)):
+    if not (_contains(oracle, b) and _contains(oracle, a)):
         return False
     u = b - a
-    return not u.any() or _first_exit(oracle, a, u, 0.0, 1.0) > 1.0
+    if not u.any():
+        return True
+    if oracle.chord != 0:
+        return _first_exit(oracle, a, u, 0.0, 1.0) > 1.0
+    return _is_free_up_to(oracle, a, u, 1.0)
+
+
+@exit_beyond.register(OracleData)
+@kernel
+def _exit_beyond(oracle, x, u, t):
+    """Return the exit of the ray if it is beyond ``t``; else a value up to ``t``."""
+    if oracle.chord == 0 and t > 0.0:
+        return _first_exit(oracle, x, u, t, np.inf) if _is_free_up_to(oracle, x, u, t) else 0.0
+    return _first_exit(oracle, x, u, 0.0, np.inf)
+
+
+@kernel
+def _is_free_up_to(oracle, x, u, end):
+    """
+    Return whether the points of the line that are tested between ``x`` and ``x + end u`` are free.
+
+    They are tested from coarse to fine: a blocked stretch is found by fewer tests than in order.
+    """
+    work, step = np.empty(len(x) + 1), oracle.resolution / norm(u)
+    last = int(end / step)
+    stride = 1
+    while 2 * stride <= last:
+        stride *= 2
+    while stride > 0:
+        for k in range(stride, last + 1, 2 * stride):
+            if not _is_in(oracle, x, u, k * step, work):
+                return False
+        stride //= 2
+    return True
 
 
 @work_size.register(OracleData)

@@ -121,6 +121,25 @@ def segment_is_free(space: CompiledSpace, a: Floats, b: Floats) -> bool:
 
 @dispatched
 @kernel
+def line_touches(space: CompiledSpace, x: Floats, u: Floats, end: float) -> bool:
+    """Return whether the line ``x + s u`` touches ``space`` at a parameter from 0 to ``end``."""
+    return first_entry(space, x, u, 0.0) <= end
+
+
+@dispatched
+@kernel
+def exit_beyond(space: CompiledSpace, x: Floats, u: Floats, t: float) -> float:
+    """
+    Return the parameter ``s > t`` at which the ray from ``x`` along ``u`` leaves ``space``.
+
+    Where it leaves the space before, any value up to ``t`` may be returned: of several rays the
+    longest is found sooner than the length of each.
+    """
+    return first_exit(space, x, u, 0.0, math.inf)
+
+
+@dispatched
+@kernel
 def flood_path(
     space: CompiledSpace, start: Floats, goal: Floats, goal_radius: float, margin: float
 ) -> Floats:

@@ -1,4 +1,8 @@
-"""The image of a ball or a box under a shear, which need not be convex."""
+"""
+The image of a ball or a box under a shear, which need not be convex.
+
+This module has the whole kind of space, the class that validates and the kernels.
+"""
 
 import math
 from typing import NamedTuple

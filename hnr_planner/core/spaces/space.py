@@ -8,6 +8,8 @@ every space:
 - obstacles are closed, free space is open: a point that touches an obstacle is not free;
 - a chord has ``lower < 0 < upper`` exactly when its point is free; else it is ``Chord(0, 0)``;
 - a motion that has to stop at a chord's end stops ``margin`` before it.
+
+The class is one contract, and so are its docstrings: hence the length of this module.
 """
 
 from abc import ABC, abstractmethod

@@ -9,18 +9,20 @@ from hnr_planner.core.kernels.kernel import kernel
 from hnr_planner.core.lengths import norm
 from hnr_planner.core.spaces.bounds import kernel_origin
 from hnr_planner.core.spaces.composed import check_members, check_same_dim, summary
-from hnr_planner.core.spaces.convex import is_convex, pack
+from hnr_planner.core.spaces.convex import is_convex
 from hnr_planner.core.spaces.curves.curve import first_exit_on_curve
 from hnr_planner.core.spaces.curves.surfaces import (
     add_crossings,
     first_exit_between_surfaces,
     max_gap_of,
 )
+from hnr_planner.core.spaces.piece_tree import pack_many
 from hnr_planner.core.spaces.primitives import (
     CompiledSpace,
     contains,
     first_entry,
     first_exit,
+    line_touches,
     touches,
 )
 from hnr_planner.core.spaces.space import Space
@@ -126,7 +128,9 @@ def _joined(leaves: Iterable[CompiledSpace], max_gap: float) -> CompiledSpace:
     for leaf in leaves:
         # A space that cannot be packed is a kind by itself.
         kinds.setdefault(type(leaf) if is_convex(leaf) else id(leaf), []).append(leaf)
-    packed = [pack(kind, max_gap) if is_convex(kind[0]) else kind[0] for kind in kinds.values()]
+    packed = [
+        pack_many(kind, max_gap) if is_convex(kind[0]) else kind[0] for kind in kinds.values()
+    ]
     return reduce(lambda one, other: UnionData(one, other, max_gap), packed)
 
 
@@ -145,6 +149,13 @@ def _contains(union, x):
 def _touches(union, x):
     """Return whether the closure of at least one of the two spaces contains ``x`` (dim,)."""
     return touches(union.one, x) or touches(union.other, x)
+
+
+@line_touches.register(UnionData)
+@kernel
+def _line_touches(union, x, u, end):
+    """Return whether the line touches one of the two spaces at a parameter from 0 to ``end``."""
+    return line_touches(union.one, x, u, end) or line_touches(union.other, x, u, end)
 
 
 @first_exit.register(UnionData)

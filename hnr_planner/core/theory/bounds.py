@@ -131,7 +131,9 @@ def printed_conductance(image: BallImage) -> float:
     """
     Return the bound of Lemma 13 on Phi, as printed.
 
-    (delta/4) min(2/(5 n D), N min(1/(24 D), (2/sqrt n) min(1/(8 sqrt n), G))).
+    (delta/4) min(2/(5 n d), N min(1/(24 D), (2/sqrt n) min(1/(8 sqrt n), G))), where d is the
+    diameter of the ball, D that of the image, delta = ``depth`` / (16 e^4 D), N = ``depth`` /
+    ``ratio_bound``, and G the closeness of Lemma 12.
     """
     n, closeness = image.dim, _closeness(image.kappa)
     delta = image.depth / (16.0 * math.exp(4.0) * image.diameter)
@@ -145,7 +147,8 @@ def corrected_conductance(image: BallImage) -> float:
     """
     Return the bound of Lemma 13 on Phi, with the three errors of the formula corrected.
 
-    r replaces 2 in the first branch, 4/D replaces 2/sqrt n, and delta/24 replaces delta/4.
+    In the formula of ``printed_conductance`` the ball's radius replaces the numerator 2 of the
+    first fraction, 4/D replaces 2/sqrt n, and delta/24 replaces delta/4.
     """
     n, closeness = image.dim, _closeness(image.kappa)
     delta = image.depth / (16.0 * math.exp(4.0) * image.diameter)

@@ -12,6 +12,7 @@ from visualization_msgs.msg import Marker, MarkerArray
 COLOURS = {
     'samples': ColorRGBA(r=0.10, g=0.45, b=0.85, a=0.9),
     'tree': ColorRGBA(r=0.45, g=0.65, b=0.90, a=0.5),
+    'alternatives': ColorRGBA(r=0.90, g=0.60, b=0.10, a=0.8),
     'path': ColorRGBA(r=0.90, g=0.25, b=0.10, a=1.0),
     'footprint': ColorRGBA(r=0.90, g=0.45, b=0.20, a=0.35),
     'start': ColorRGBA(r=0.10, g=0.65, b=0.25, a=1.0),

@@ -24,9 +24,10 @@ def run(*command: str, **environment: str) -> list[str]:
     return done.stdout.splitlines()
 
 
-@pytest.mark.parametrize('workload', WORKLOADS)
-def test_both_tiers_agree_on_every_call(workload: str):
-    assert run('-m', 'test.core.kernels.replays', workload, **ZEROED)
+@pytest.mark.sweep
+def test_both_tiers_agree_on_every_call():
+    """One process replays all: to import and to load machine code takes longer than most of it."""
+    assert run('-m', 'test.core.kernels.replays', **ZEROED) == list(WORKLOADS)
 
 
 NEEDED = """
@@ -48,6 +49,7 @@ def needed(tier: str, **environment: str) -> set[str]:
     return {line for line in lines if line.startswith('NEEDS')}
 
 
+@pytest.mark.sweep
 def test_both_tiers_need_the_same_machine_code(tmp_path: Path):
     """What is compiled ahead is found by interpreted calls, with nothing in the cache."""
     found = needed('auto', NUMBA_CACHE_DIR=str(tmp_path))

@@ -6,7 +6,7 @@ from hnr_planner.core import Space
 from hnr_planner.core.checks import Floats
 from hnr_planner.core.kernels.kernel import kernel
 from hnr_planner.core.kernels.streams import stream
-from hnr_planner.core.sampling.chains import new_chain
+from hnr_planner.core.sampling.chain import new_chain
 from hnr_planner.core.sampling.steps import take_step
 from hnr_planner.core.sampling.walks import make_walk, Walk
 from hnr_planner.core.spaces.chain_cache import open_cache, refresh

@@ -22,7 +22,7 @@ from hnr_planner.core import (
 )
 from hnr_planner.core.kernels.kernel import interpreted
 from hnr_planner.core.kernels.streams import stream
-from hnr_planner.core.sampling.chains import new_chain, take_steps
+from hnr_planner.core.sampling.chain import new_chain, take_steps
 from hnr_planner.core.sampling.walks import make_walk
 from hnr_planner.core.spaces.chain_cache import chord_cached, NO_AXIS, open_cache, REFRESH, refresh
 import numpy as np

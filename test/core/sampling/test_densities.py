@@ -26,7 +26,7 @@ from hnr_planner.core import (
 )
 from hnr_planner.core.kernels.kernel import interpreted
 from hnr_planner.core.kernels.streams import stream
-from hnr_planner.core.sampling.chains import new_chain, take_steps
+from hnr_planner.core.sampling.chain import new_chain, take_steps
 from numba import njit
 import numpy as np
 import pytest

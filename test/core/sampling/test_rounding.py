@@ -23,7 +23,7 @@ from hnr_planner.core import (
 )
 from hnr_planner.core.kernels.kernel import inlined
 from hnr_planner.core.kernels.streams import stream, uniform
-from hnr_planner.core.sampling.chains import new_chain, take_steps
+from hnr_planner.core.sampling.chain import new_chain, take_steps
 from hnr_planner.core.sampling.steps import STEPS, take_step
 from hnr_planner.core.spaces.chain_cache import (
     chord_cached,

@@ -129,7 +129,7 @@ def test_threads_of_chains_run_kernels_in_the_mode_of_the_caller():
         seen.add(modes.mode())
         return True
 
-    space = OracleSpace(contains, (0.0, 0.0), (1.0, 1.0), resolution=0.1)
     with modes.mode_of_thread(modes.Mode.INTERPRETED):
+        space = OracleSpace(contains, (0.0, 0.0), (1.0, 1.0), resolution=0.1)
         sample(space, (0.5, 0.5), 2, n_chains=2, seed=1)
     assert seen == {modes.Mode.INTERPRETED}

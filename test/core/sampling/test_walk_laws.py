@@ -28,14 +28,23 @@ from scipy import stats
 N_COORDINATE = 100_000
 N_CHAINS, N_STEPS = 2_000, 200
 
+#: Sets whose walks would be compiled for them alone.
+FURTHER = ('hall and dome', 'court with pillars', 'banana, 3-D')
+
+
+def marked(name: str, *values: object) -> object:
+    """Return a parameter that belongs to the sweeps if its set does."""
+    return pytest.param(name, *values, marks=[pytest.mark.sweep] * (name in FURTHER))
+
+
 EACH_WALK = pytest.mark.parametrize('walk', WALKS)
 ONE_STEP = pytest.mark.parametrize(
     ('name', 'k'),
-    [(name, k) for name, gate_set in SETS.items() for k in range(len(gate_set().points))],
+    [marked(name, k) for name, gate_set in SETS.items() for k in range(len(gate_set().points))],
 )
 
 
-@pytest.fixture(params=SETS)
+@pytest.fixture(params=map(marked, SETS))
 def gate_set(request) -> GateSet:
     return SETS[request.param]()
 

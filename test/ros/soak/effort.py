@@ -13,4 +13,4 @@ class Effort(NamedTuple):
     rounds: int
 
 
-EFFORT = Effort(500, 60.0, 2000, 5) if 'HNR_SOAK' in os.environ else Effort(25, 4.0, 100, 1)
+EFFORT = Effort(500, 600.0, 2000, 5) if 'HNR_SOAK' in os.environ else Effort(10, 2.0, 60, 1)

@@ -5,15 +5,25 @@ from collections.abc import Callable, Iterator
 from itertools import count
 from pathlib import Path
 from statistics import median
-from test.ros.harness import Client, grid_message, MANY, node_process, NodeProcess, stamp_of, until
+from test.ros.harness import (
+    Client,
+    grid_message,
+    MANY,
+    node_process,
+    NodeProcess,
+    points_of,
+    stamp_of,
+    until,
+)
 from test.ros.soak.callers import Answered, callers
 from test.ros.soak.effort import EFFORT
 from test.ros.soak.judge import SOLVED, World
-from test.ros.soak.worlds import requests, rooms
+from test.ros.soak.worlds import across, hall, requests, rooms
 import threading
 import time
 
 from diagnostic_msgs.msg import DiagnosticArray
+from nav_msgs.srv import GetPlan
 import numpy as np
 import pytest
 
@@ -117,13 +127,17 @@ def complaints(world: World, one: Answered) -> list[str]:
 def test_paths_are_right_while_maps_arrive(
     client: Client, planner: NodeProcess, tell: Tell
 ) -> None:
-    """Each path is free on a map that may have been the newest when it was answered."""
+    """
+    Each path is free on a map that may have been the newest when it was answered.
+
+    The route of a client that asks for the same again and again does not change its side.
+    """
     sent: list[tuple[float, World]] = []
     done = threading.Event()
 
     def publish() -> None:
-        for door in count():
-            sent.append((time.monotonic(), rooms(door)))
+        for moment in count():
+            sent.append((time.monotonic(), hall(moment)))
             client.publish_map(grid_message(sent[-1][1].data, sent[-1][1].resolution))
             if done.wait(1.0 / MAPS_A_SECOND):
                 break
@@ -135,8 +149,8 @@ def test_paths_are_right_while_maps_arrive(
         ending = time.monotonic() + EFFORT.seconds
         seeds = np.random.SeedSequence(2).spawn(N_PLANNING)
         working = [
-            caller.ask_all(until_time(ending, np.random.default_rng(own)))
-            for caller, own in zip(asking, seeds, strict=True)
+            caller.ask_all(until_time(ending, np.random.default_rng(own), across(number)))
+            for number, (caller, own) in enumerate(zip(asking, seeds, strict=True))
         ]
         for thread in working:
             thread.join()
@@ -144,18 +158,32 @@ def test_paths_are_right_while_maps_arrive(
     publishing.join()
     answered = [one for caller in asking for one in caller.answered]
     wrong = [one for one in answered if not right_on_some(sent, one)]
+    sides = [[above for one in caller.answered for above in side_of(one)] for caller in asking]
     prepared = planner.log.count('map received')
     tell(
         f'{len(answered)} requests while {len(sent)} maps came in {EFFORT.seconds:.0f} s, '
-        f'{prepared} of them prepared; {sum(bool(one.path.poses) for one in answered)} paths'
+        f'{prepared} of them prepared; {sum(bool(one.path.poses) for one in answered)} paths; '
+        f'sides of routes that stay: {[len(side) for side in sides]} answers'
     )
     assert wrong == []
+    assert all(len(set(side)) <= 1 for side in sides)
+    assert any(sides)
 
 
-def until_time(ending: float, rng: np.random.Generator) -> Iterator:
-    """Yield random requests until a time."""
+def until_time(ending: float, rng: np.random.Generator, same: GetPlan.Request) -> Iterator:
+    """Yield a request again and again, and random ones between, until a time."""
     while time.monotonic() < ending:
+        yield same
         yield from requests(rng, 1)
+
+
+def side_of(one: Answered) -> list[bool]:
+    """Return whether the path of an answer passes above the island; nothing for others."""
+    if all(one.request != across(number) for number in range(N_PLANNING)):
+        return []
+    points = points_of(one.path)
+    middle = int(np.argmin(abs(points[:, 0] - 4.0)))
+    return [bool(points[middle, 1] > 4.0)]
 
 
 def right_on_some(sent: list[tuple[float, World]], one: Answered) -> bool:

@@ -32,6 +32,30 @@ def rooms(door: int = 0) -> World:
     return World(data, RESOLUTION)
 
 
+def hall(moment: int = 0) -> World:
+    """
+    Return a hall with an island, and one cell without a door in a corner.
+
+    The ways around the island grow narrow in turns, so that the shorter one changes with each
+    moment; and somebody walks along its far side.
+    """
+    data = np.zeros((SIDE, SIDE), dtype=np.int8)
+    data[30:50, 30:50] = 100
+    wider = slice(50, 52) if moment % 2 == 0 else slice(28, 30)
+    data[wider, 30:50] = 100
+    person = 20 + moment % 40
+    data[70:74, person:][:, :4] = 100
+    data[4:12, 4:12] = 100
+    data[5:11, 5:11] = 0
+    return World(data, RESOLUTION)
+
+
+def across(number: int) -> GetPlan.Request:
+    """Return the request of a client from the left of the island in the hall to the right."""
+    y = SIDE * RESOLUTION / 2.0 + 0.01 * number
+    return plan_request((1.5, y), (6.5, y))
+
+
 def plan_request(
     start: tuple[float, float],
     goal: tuple[float, float],

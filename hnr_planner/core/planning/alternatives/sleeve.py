@@ -76,7 +76,7 @@ def shortest_in_class(space, slabs, points, margin):
 @kernel
 def _portals_passed(slabs, points):
     """
-    Return the portals that a path (m, 2) passes, without those that it passes to and fro.
+    Return the portals that a path (m, 2) passes, without those by which it comes straight back.
 
     Returns (passed, is_whole): ``passed`` (k,) holds twice the index of each portal, plus ``UP``
     where it is passed upwards; ``is_whole`` is false where they do not lead to the path's end.

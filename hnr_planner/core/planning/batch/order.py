@@ -234,7 +234,11 @@ def _move_parts(lengths, ring, least_gain):
 
 @kernel
 def _move(ring, i, j, k, forward):
-    """Put the entries i to j - 1 of a ring after entry k, which is none of them, or reversed."""
+    """
+    Move the entries i to j - 1 of a ring to the place after entry k, which is none of them.
+
+    They keep their order if ``forward``, and are reversed otherwise.
+    """
     if k >= j:
         _reverse(ring, i, j - 1)
         _reverse(ring, j, k)

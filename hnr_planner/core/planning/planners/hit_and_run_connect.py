@@ -5,8 +5,8 @@ The paper's chain explores fast but wanders, and its path is the whole walk; the
 planners with short paths to future work. Here a tree grows from each end of the request. From a
 vertex at the frontier of its tree a step is like Hit-and-Run's, but chooses among a few uniform
 directions the one with the longest free ray, and a uniform point on the outer section of that ray.
-For each new vertex segments to the other tree are tested: to the vertices nearby, and to one drawn
-uniformly.
+For each new vertex segments to the other tree are tested: to vertices nearby, and to one or two
+drawn uniformly.
 """
 
 from dataclasses import dataclass, field
@@ -34,7 +34,7 @@ from hnr_planner.core.planning.planners.two_trees import (
 )
 from hnr_planner.core.sampling.draws import draw_between
 from hnr_planner.core.spaces.lines import draw_direction
-from hnr_planner.core.spaces.primitives import component, first_exit, segment_is_free
+from hnr_planner.core.spaces.primitives import component, exit_beyond, segment_is_free
 from hnr_planner.core.trees import NONE
 import numpy as np
 from numpy.typing import NDArray
@@ -43,6 +43,12 @@ from numpy.typing import NDArray
 #: skips: the best of 1 to 6 and of 0 to .9 on building maps and spirals.
 N_RAYS = 4
 INNER = 0.7
+#: Bins around that of a new vertex whose vertices of the other tree are tested, on each side, and
+#: number of those drawn uniformly: in the plane, and in more dimensions, where bins, which are of
+#: the first two coordinates, say little of what is near (measured on walls with holes and among
+#: balls in 3 and 6 dimensions).
+AROUND, AROUND_IN_SPACE = 1, 0
+N_UNIFORM, N_UNIFORM_IN_SPACE = 1, 2
 
 
 class FrontierTrees(NamedTuple):
@@ -184,7 +190,7 @@ def _step(space, x, rng, directions, y):
     u, best, longest = directions[0], directions[1], 0.0
     for _ in range(N_RAYS):
         draw_direction(space, rng, u)
-        reach = first_exit(space, x, u, 0.0, np.inf)
+        reach = exit_beyond(space, x, u, longest)
         if reach > longest:
             longest = reach
             copy_into(best, u)
@@ -204,17 +210,22 @@ def _meet(space, trees, row, bin_number, other, rng):
     """
     Return the row of a vertex of tree ``other`` visible from vertex ``row``; NONE if not found.
 
-    Tested are the newest vertices in the bin of number ``bin_number`` and in the 8 bins around it,
-    and then one vertex drawn uniformly.
+    Tested are the newest vertices in the bin of number ``bin_number`` and, in the plane, in the 8
+    bins around it, and then vertices drawn uniformly.
     """
     vertices, size = trees.table.vertices, trees.table.sizes[other]
     if size == 0:
         return NONE
     newest, columns = trees.frontier.newest, trees.frontier.bins.columns
-    for below in (-columns, 0, columns):
-        for beside in (-1, 0, 1):
-            k = newest[other, bin_number + below + beside]
+    in_plane = vertices.shape[1] <= 2
+    around = AROUND if in_plane else AROUND_IN_SPACE
+    for below in range(-around, around + 1):
+        for beside in range(-around, around + 1):
+            k = newest[other, bin_number + columns * below + beside]
             if k != NONE and segment_is_free(space, vertices[row], vertices[k]):
                 return k
-    k = trees.members[int(size * uniform(rng)), other]
-    return k if segment_is_free(space, vertices[row], vertices[k]) else NONE
+    for _ in range(N_UNIFORM if in_plane else N_UNIFORM_IN_SPACE):
+        k = trees.members[int(size * uniform(rng)), other]
+        if segment_is_free(space, vertices[row], vertices[k]):
+            return k
+    return NONE

@@ -96,6 +96,10 @@ class PolyanyaSearch:
     #: State and target of the search; None until the first ``advance``.
     _frontier: Frontier | None = field(init=False, default=None)
     _target: Target | None = field(init=False, default=None)
+    #: The lower bound after the last expansions that were not interrupted.
+    _bound: float | None = field(init=False, default=None)
+    #: Least number of rows that the next expansions need.
+    _rows: int = field(init=False, default=0)
 
     @property
     def solved(self) -> bool:
@@ -109,12 +113,10 @@ class PolyanyaSearch:
 
         It is the least length itself once the search is solved, and inf where no path exists.
         """
-        if self._frontier is None:
+        if self._bound is None:
             problem = self.problem
             return max(math.dist(problem.start, problem.goal) - problem.goal_radius, 0.0)
-        if self._frontier.sizes[N_OPEN] == 0:
-            return math.inf
-        return float(self._frontier.estimates[0])
+        return self._bound
 
     @property
     def samples(self) -> Floats:
@@ -161,17 +163,20 @@ class PolyanyaSearch:
 
     def advance(self, n_iterations: int) -> None:
         """Expand at most ``n_iterations`` cones, fewer once solved or when no cone is left."""
-        slabs, end = self.space.slabs, self.iterations + n_iterations
-        if self._frontier is None:
-            problem = self.problem
-            ends = problem.start, problem.goal, problem.goal_radius
-            self._frontier, self._target, expanded = begin(
-                slabs, *ends, problem.margin, INITIAL_CAPACITY, n_iterations
-            )
-        else:
-            expanded = expand(slabs, self._frontier, self._target, n_iterations)
-        self.iterations += expanded
-        while self.iterations < end and not self.solved and self._frontier.sizes[N_OPEN] > 0:
-            self._frontier = with_more_rows(self._frontier, len(self._frontier.nodes) + 1)
+        slabs, problem = self.space.slabs, self.problem
+        end, is_over = self.iterations + n_iterations, False
+        while not is_over:
             left = end - self.iterations
-            self.iterations += expand(slabs, self._frontier, self._target, left)
+            if self._frontier is None:
+                ends = problem.start, problem.goal, problem.goal_radius
+                self._frontier, self._target, expanded = begin(
+                    slabs, *ends, problem.margin, INITIAL_CAPACITY, left
+                )
+            else:
+                self._frontier = with_more_rows(self._frontier, self._rows)
+                expanded = expand(slabs, self._frontier, self._target, left)
+            self.iterations += expanded
+            is_open = bool(self._frontier.sizes[N_OPEN] > 0)
+            self._bound = float(self._frontier.estimates[0]) if is_open else math.inf
+            is_over = self.solved or not is_open or self.iterations == end
+            self._rows = len(self._frontier.nodes) + (0 if is_over else 1)

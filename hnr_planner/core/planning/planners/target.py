@@ -128,7 +128,7 @@ def _is_within(bounds, px, py):
 
 @kernel
 def _left_of(bound, px, py):
-    """Return the distance of a point to the left of a line, negative on its right."""
+    """Return the distance of a point from the line of a bound, negative on its right side."""
     ux, uy = bound[2] - bound[0], bound[3] - bound[1]
     length = math.hypot(ux, uy)
     return (ux * (py - bound[1]) - uy * (px - bound[0])) / length if length > 0.0 else 0.0

@@ -32,7 +32,11 @@ def first_exit_from_grid(grid, curve, end):
 
 @kernel
 def first_exit_of_coordinates(free_distance, x, y, end):
-    """Return the first parameter in [0, ``end``] at which the point (x, y) is not free, or inf."""
+    """
+    Return the first parameter in [0, ``end``] at which a curve is not free; inf for none.
+
+    ``x`` and ``y`` are the coordinates of the curve [cells], as ``coordinate`` returns them.
+    """
     if not is_free(free_distance, at(x, 0.0), at(y, 0.0)):
         return 0.0
     t = 0.0
@@ -48,9 +52,10 @@ def first_exit_of_coordinates(free_distance, x, y, end):
 @kernel
 def _first_exit_of_piece(free_distance, x, y, t, end):
     """
-    Return the first parameter in [``t``, ``end``] at which a curve is not free, or inf.
+    Return the first parameter in [``t``, ``end``] at which a curve is not free; inf for none.
 
-    The curve must not turn between ``t`` and ``end`` in either coordinate.
+    ``x`` and ``y`` are the coordinates of the curve [cells]. Neither of them may turn between
+    ``t`` and ``end``.
     """
     x_at_t, y_at_t = at(x, t), at(y, t)
     column, column_step, beside_column = first_cell(x_at_t, at(x, end) - x_at_t)

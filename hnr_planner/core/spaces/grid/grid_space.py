@@ -1,4 +1,9 @@
-"""An occupancy grid as a space: free points, components, and the distance to walls."""
+"""
+An occupancy grid as a space: free points, components, and the distance to walls.
+
+The class is the front of all modules of this folder, which do the work: most of its length is
+docstrings.
+"""
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field

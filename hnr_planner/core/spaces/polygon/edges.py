@@ -10,6 +10,8 @@ comparisons of coordinates decide whether an edge is crossed, without rounding.
 No ray passes between two edges that share a corner: on which side of the ray the corner lies is
 computed from the same numbers for both edges. A point or a ray that is closer to an edge than
 ``rounding`` touches the edge.
+
+Only this module knows what the arrays of ``PolygonData`` mean: hence its length.
 """
 
 import math

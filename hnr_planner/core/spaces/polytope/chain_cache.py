@@ -7,6 +7,9 @@ are one column of the normals; where these are stored sparsely, only its nonzero
 
 Rounding lets the distances drift, so they are recomputed every ``REFRESH`` steps, and a move to
 less than ``doubt`` from a plane is checked from the point itself: every point of a chain is free.
+
+Lines and moves have a loop each for any direction, and for an axis in the dense and in the sparse
+layout of the normals: hence the length of this module.
 """
 
 import math

@@ -1,4 +1,9 @@
-"""A polytope: the points that satisfy finitely many linear inequalities and equations."""
+"""
+A polytope: the points that satisfy finitely many linear inequalities and equations.
+
+One class serves polytopes with and without equations, and is as long as two: whether equations
+hold turns out only when the inequalities have been solved.
+"""
 
 from functools import cached_property
 from typing import Any

@@ -288,7 +288,7 @@ def detour(beyond: float) -> Floats:
 
 @pytest.mark.parametrize('seed', range(10))
 def test_on_a_grid_a_ragged_path_becomes_the_shortest_that_it_can_be_deformed_into(seed: int):
-    """It may cross itself, go to and fro and pass along lines of cells."""
+    """It may cross itself, turn back and pass along lines of cells."""
     rng = np.random.default_rng(seed)
     blocked = maps.speckle(20, 24, 0.2, seed=seed)
     space = GridSpace.from_blocked(blocked, 0.5, ORIGIN)

@@ -1,5 +1,6 @@
 """Polyanya finds the shortest path, by an independent solver in whole numbers."""
 
+from itertools import count
 import math
 import os
 from pathlib import Path
@@ -7,7 +8,14 @@ from test.brute_force import path_collisions
 from test.visibility_graph import SCALE, shortest_length
 import threading
 
-from hnr_planner.core import BoxSpace, GridSpace, plan, PlannerStatus, RequestError
+from hnr_planner.core import BoxSpace, GridSpace, plan, PlannerStatus, Polyanya, RequestError
+from hnr_planner.core.errors import Interrupted
+from hnr_planner.core.kernels import interruption
+from hnr_planner.core.kernels.interruption import interruptible
+from hnr_planner.core.kernels.kernel import interpreted
+from hnr_planner.core.kernels.streams import stream
+from hnr_planner.core.planning.planner import make_problem
+from hnr_planner.core.planning.planners import polyanya
 from hnr_planner.maps import load_map
 import numpy as np
 import pytest
@@ -148,6 +156,32 @@ def test_a_search_that_is_cut_has_a_bound_that_grows():
     bounds = [exact(space, *ends, max_iterations=n).lower_bound for n in (1, 10, 100, 1000)]
     assert math.dist(*ends) <= bounds[0] < bounds[-1] < shortest
     assert bounds == sorted(bounds)
+
+
+def test_a_search_that_is_interrupted_anywhere_has_a_bound(monkeypatch: pytest.MonkeyPatch):
+    """Also where the only open cone is just being expanded, so that none is open."""
+    monkeypatch.setattr(interruption, 'CHECK_INTERVAL', 0.0)
+    blocked = np.zeros((20, 12), dtype=bool)
+    blocked[:16, 3] = blocked[4:, 6] = blocked[:16, 9] = True
+    for name in ('begin', 'expand'):  # interpreted also where machine code is loaded
+        monkeypatch.setattr(polyanya, name, interpreted(getattr(polyanya, name)))
+    space = GridSpace.from_blocked(blocked)
+    problem = make_problem(space, np.array([1.5, 2.5]), np.array([10.5, 2.5]), 0.0)
+    planner = Polyanya().for_space(space)
+    whole = planner.start(problem, stream(0))
+    whole.advance(1000)
+    assert whole.solved
+    for n in range(1000):
+        search, checks = planner.start(problem, stream(0)), count()
+        search.advance(1)
+        try:
+            with interruptible(lambda: next(checks) >= n):  # noqa: B023
+                search.advance(1000)
+        except Interrupted:
+            assert search.lower_bound <= whole.lower_bound
+            continue
+        break
+    assert n > 10 and search.lower_bound == whole.lower_bound
 
 
 def test_the_clock_and_a_cancellation_end_it():

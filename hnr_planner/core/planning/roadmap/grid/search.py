@@ -195,7 +195,11 @@ def _connect_goal(graph, work):
 
 @kernel
 def _connect_start(graph, work, x, y):
-    """Label the states seen from the start (x, y), and store the straight path if it is free."""
+    """
+    Label the states at corners visible from the start (x, y), kernel frame.
+
+    If the goal itself is visible, store the straight path as the shortest one instead.
+    """
     places, goal = graph.corners.places, work.goal
     n_seen = see_from_point(graph.slabs, graph.corners, x, y, goal[0], goal[1], work.sweep)
     for k in range(n_seen):

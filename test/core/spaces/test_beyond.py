@@ -1,0 +1,105 @@
+"""Questions that stop early, held against the exits and entries that they stand for."""
+
+from collections.abc import Iterator
+import math
+
+from hnr_planner.core import BallSpace, BoxSpace, DifferenceSpace, OracleSpace, Space, UnionSpace
+from hnr_planner.core.spaces.primitives import (
+    contains,
+    exit_beyond,
+    first_entry,
+    first_exit,
+    line_touches,
+    segment_is_free,
+)
+import numpy as np
+from numpy.typing import NDArray
+import pytest
+
+pytestmark = pytest.mark.interpreted
+
+#: Lines drawn in each space.
+N_LINES = 60
+
+
+def _solids() -> DifferenceSpace:
+    """Return a box without balls, and without boxes that abut."""
+    centres = np.random.default_rng(5).uniform(0.0, 1.0, (6, 3))
+    return DifferenceSpace(
+        BoxSpace(np.zeros(3), np.ones(3)),
+        *(BallSpace(centre, 0.25) for centre in centres),
+        BoxSpace((0.4, 0.0, 0.0), (0.5, 0.5, 1.0)),
+        BoxSpace((0.4, 0.5, 0.0), (0.5, 1.0, 0.4)),
+    )
+
+
+def _is_in_ring(x: NDArray) -> bool:
+    return bool(0.3 < np.hypot(x[0], x[1]) < 1.0)
+
+
+SPACES = {
+    'solids': _solids,
+    'union': lambda: UnionSpace(BoxSpace((0, 0), (2, 1)), BallSpace((2, 1), 0.7)),
+    'oracle': lambda: OracleSpace(_is_in_ring, (-1.1, -1.2), (1.2, 1.1), resolution=0.05),
+}
+
+
+def _lines(space: Space) -> Iterator[tuple[NDArray, NDArray, float]]:
+    """Yield free points, directions, and parameters, in the kernel frame."""
+    rng = np.random.default_rng(2)
+    lower, upper = space.kernel_bounds
+    for _ in range(N_LINES):
+        x = rng.uniform(lower, upper)
+        if contains.interpreted(space.data, x):
+            yield x, rng.uniform(lower, upper) - x, rng.uniform(0.0, 1.5)
+
+
+@pytest.mark.parametrize('name', SPACES)
+def test_an_exit_beyond_a_parameter_is_the_exit(name: str) -> None:
+    """Before it, any value up to the parameter tells that much."""
+    space = SPACES[name]()
+    beyond = 0
+    for x, u, t in _lines(space):
+        end = first_exit.interpreted(space.data, x, u, 0.0, math.inf)
+        found = exit_beyond.interpreted(space.data, x, u, t)
+        if end > t:
+            # An oracle locates its exits up to a thousandth of the margin.
+            assert found == pytest.approx(end, abs=space.margin, rel=0.0)
+            beyond += 1
+        else:
+            assert found <= t
+    assert 5 < beyond < N_LINES - 5
+
+
+@pytest.mark.parametrize('name', SPACES)
+def test_a_segment_is_free_where_the_exit_is_beyond_its_end(name: str) -> None:
+    """And both of its ends are free."""
+    space = SPACES[name]()
+    free = 0
+    for x, u, _ in _lines(space):
+        is_free = segment_is_free.interpreted(space.data, x, x + u)
+        end = first_exit.interpreted(space.data, x, u, 0.0, 1.0)
+        assert is_free == (contains.interpreted(space.data, x + u) and end > 1.0)
+        free += is_free
+    assert free > 5
+
+
+def test_a_line_touches_what_it_enters_up_to_the_end() -> None:
+    """Balls and boxes that are removed, from within them and from outside."""
+    removed = _solids().data.removed
+    rng = np.random.default_rng(3)
+    touching = 0
+    for _ in range(N_LINES):
+        x, u, end = rng.uniform(-1.0, 1.0, 3), rng.normal(size=3), rng.uniform(0.0, 2.0)
+        entry = first_entry.interpreted(removed, x, u, 0.0)
+        assert line_touches.interpreted(removed, x, u, end) == (entry <= end)
+        touching += entry <= end
+    assert 5 < touching < N_LINES - 5
+
+
+def test_a_segment_of_one_point_is_free_where_the_point_is() -> None:
+    """A ball has no direction to be looked at along."""
+    solids = _solids().data
+    for x, is_free in ((np.full(3, 0.01), True), (np.array([0.45, 0.2, 0.2]), False)):
+        assert contains.interpreted(solids, x) == is_free
+        assert segment_is_free.interpreted(solids, x, x.copy()) == is_free
