@@ -27,7 +27,6 @@ CHANGE, TURN = 1.0, 0.5
 #: Distance that counts as much as a turn of 1 rad for the nearest vertex, in turning radii or
 #: reaches.
 WEIGHT = 0.5
-
 #: Distance [cells] before a contact at which motions stop, at the least: a path that touches an
 #: obstacle but for rounding is of no use to a robot.
 STAND_OFF = 1e-3
