@@ -24,6 +24,8 @@ import numpy as np
 N_ALONG, CONTACT, STEP = 150, 1e-5, 0.2
 #: Transitions that a plan may take: enough for most.
 N_ITERATIONS = 2000
+#: Free poses that are drawn at once; the more, the surer some are found on a crowded map.
+N_FREE = 20
 DRIVES = (
     {'drive': 'car', 'min_turning_radius': 0.8},
     {'drive': 'differential'},
@@ -70,7 +72,7 @@ def main() -> None:
 
 def wrong_chord(space: PoseSpace, judge: PoseChecker, rng: np.random.Generator) -> str:
     """Return what is wrong with the chord of a random twist at a random free pose; '' for none."""
-    (pose,), twist = free_poses(space, rng, 1), random_twist(rng)
+    pose, twist = free_poses(space, rng, N_FREE)[0], random_twist(rng)
     lower, upper = space.chord(pose, twist)
     fractions = np.concatenate([np.linspace(0.0, 1.0, N_ALONG)[1:-1], [1e-7, 1.0 - 1e-7]])
     along = orbit(pose, twist, lower + fractions * (upper - lower))
@@ -87,7 +89,7 @@ def wrong_plan(
     space: PoseSpace, judge: PoseChecker, rng: np.random.Generator
 ) -> tuple[PlannerStatus, str]:
     """Return the status of a plan between random free poses, and what is wrong with its path."""
-    start, goal = free_poses(space, rng, 2)
+    start, goal = free_poses(space, rng, N_FREE)[:2]
     seed = int(rng.integers(2**31))
     result = plan(space, start, goal, seed=seed, time_limit=math.inf, max_iterations=N_ITERATIONS)
     if result.status is not PlannerStatus.SOLVED:

@@ -27,6 +27,9 @@ CHANGE, TURN = 1.0, 0.5
 #: Distance that counts as much as a turn of 1 rad for the nearest vertex, in turning radii or
 #: reaches.
 WEIGHT = 0.5
+#: Distance [cells] before a contact at which motions stop, at the least: a path that touches an
+#: obstacle but for rounding is of no use to a robot.
+STAND_OFF = 1e-3
 
 
 @dataclass(frozen=True)
@@ -92,7 +95,7 @@ class PoseRequest:
             guide,
             disc.centre / space.scale,
             WEIGHT * (1.0 / data.max_curvature if data.drive == CAR else data.reach),
-            space.margin,
+            max(space.margin, STAND_OFF),
         )
 
     def goals(self) -> Floats:
