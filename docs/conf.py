@@ -108,6 +108,7 @@ MOVED = (
     ('', '../CITATION.cff', 'CITATION.cff'),
     ('ros/', '../docs/', '../'),
     ('ros/', '../README.md', '../index.md'),
+    ('ros/', '../benchmarks/results.md', '../benchmark.md'),
 )
 
 
