@@ -68,19 +68,42 @@ _called: dict[tuple['Kernel', Signature], None] = {}
 
 
 class _Cache(FunctionCache):
-    """The cache of one kernel on disk; machine code that cannot be written is still used."""
+    """
+    The cache of one kernel on disk; machine code that cannot be written is still used.
+
+    What cannot be read is compiled anew: files that are damaged, and an index that names types of
+    a module which is gone, because somebody's program has called the kernel with them.
+    """
 
     #: The last error in writing machine code; None if there was none.
     not_kept: OSError | None = None
 
+    def load_overload(self, sig: Any, target_context: Any) -> Any:
+        """Return machine code from disk; None if none can be read, with a warning of why."""
+        try:
+            return super().load_overload(sig, target_context)
+        except Exception as error:  # whatever a damaged file makes of numba
+            _log.warning('the cached machine code of %s cannot be used: %r', self._name, error)
+            return None
+
     def save_overload(self, sig: Any, data: Any) -> None:
         """Write machine code to disk; if that fails, keep the error, and log the first one."""
         try:
-            super().save_overload(sig, data)
+            self._save(sig, data)
         except OSError as error:
             if self.not_kept is None:
                 _log.warning('the machine code of %s cannot be kept: %s', self._name, error)
             self.not_kept = error
+
+    def _save(self, sig: Any, data: Any) -> None:
+        """Write machine code to disk; begin a new index if the present one cannot be read."""
+        try:
+            super().save_overload(sig, data)
+        except OSError:
+            raise
+        except Exception:  # whatever a damaged index makes of numba
+            self.flush()
+            super().save_overload(sig, data)
 
 
 class Kernel(CPUDispatcher):
@@ -162,11 +185,7 @@ class Kernel(CPUDispatcher):
         with global_compiler_lock:
             if signature in self.overloads:
                 return True
-            try:
-                code = self._cache.load_overload(signature, self.targetctx)
-            except Exception as error:  # whatever a damaged file makes of numba
-                _log.warning('the cached machine code of %s cannot be used: %r', self, error)
-                return False
+            code = self._cache.load_overload(signature, self.targetctx)
             if code is None:
                 return False
             self.targetctx.insert_user_function(code.entry_point, code.fndesc, [code.library])

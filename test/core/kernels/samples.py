@@ -55,6 +55,12 @@ def _total_of_pair(pair, factor):
     return factor * (pair.one + pair.other)
 
 
+@kernel
+def first_of(pair):
+    """Return the first number of a tuple of any type."""
+    return pair[0]
+
+
 def gate() -> float:
     """Return 1; compiling it leaves a mark in ``HNR_TEST_GATE``, and waits there for ``open``."""
     return 1.0

@@ -10,6 +10,8 @@ from pathlib import Path
 import signal
 import time
 
+import pytest
+
 from .conftest import next_line, output, PATIENCE, ROOT, Start
 
 SWITCH = """
@@ -372,3 +374,32 @@ def test_a_child_whose_disk_is_full_says_so(start: Start, tmp_path: Path):
     assert warning.endswith(
         'halved stays interpreted: OSError: [Errno 28] No space left on device'
     )
+
+
+@pytest.mark.parametrize('damage', ['a type that is gone', 'no index at all'])
+@pytest.mark.parametrize('mode', ['auto', 'compiled'])
+def test_a_cache_that_cannot_be_read_is_made_anew(
+    start: Start, tmp_path: Path, mode: str, damage: str
+):
+    module = tmp_path / 'mine.py'
+    module.write_text('from typing import NamedTuple\nclass Mine(NamedTuple):\n    one: float\n')
+    script = 'import mine\nsay(samples.first_of(mine.Mine(2.0)))'
+    assert output(start(script, HNR_PLANNER_KERNELS='compiled'))[-1] == '2.0'
+    (index,) = (tmp_path / 'cache').rglob('*first_of*.nbi')
+    module.unlink()
+    if damage == 'no index at all':
+        index.write_bytes(index.read_bytes()[:-20])
+    lines = output(
+        start(
+            """
+            samples.first_of((3.0, 1.0))
+            wait(lambda: not compilation.status().pending)
+            before = interpreted_calls()
+            say(samples.first_of((3.0, 1.0)), interpreted_calls() - before)
+            """,
+            HNR_PLANNER_KERNELS=mode,
+        )
+    )
+    assert any('first_of' in line and 'cannot be used' in line for line in lines)
+    assert '3.0 0' in lines
+    assert output(start('say(samples.first_of((3.0, 1.0)), interpreted_calls())')) == ['3.0 0']
