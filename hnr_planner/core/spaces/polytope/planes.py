@@ -217,9 +217,14 @@ def _slack(polytope, k, x):
 @kernel
 def _rate(polytope, k, u):
     """Return the rate at which a line along ``u`` approaches plane ``k``."""
+    layout = polytope.layout
     rate = 0.0
-    for i in range(len(u)):
-        rate += polytope.normals[k, i] * u[i]
+    if len(layout.dense) > 0:
+        for i in range(len(u)):
+            rate += polytope.normals[k, i] * u[i]
+        return rate
+    for i in range(layout.row_starts[k], layout.row_starts[k + 1]):
+        rate += layout.row_values[i] * u[layout.columns[i]]
     return rate
 
 
