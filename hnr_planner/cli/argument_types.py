@@ -61,10 +61,7 @@ def picture(text: str) -> Path:
     ArgumentTypeError is raised where its folder does not exist, it is a folder itself, or its name
     ends in none of ``PICTURES``.
     """
-    file = output_file(text)
-    if file.suffix.lower() not in PICTURES:
-        raise argparse.ArgumentTypeError(f'{text!r} does not end in one of {", ".join(PICTURES)}')
-    return file
+    return _output_file_in(PICTURES, text)
 
 
 def page(text: str) -> Path:
@@ -74,9 +71,14 @@ def page(text: str) -> Path:
     ArgumentTypeError is raised where its folder does not exist, it is a folder itself, or its name
     ends in none of ``PAGES``.
     """
+    return _output_file_in(PAGES, text)
+
+
+def _output_file_in(endings: tuple[str, ...], text: str) -> Path:
+    """Return the path of a file to write whose name ends in one of ``endings``, for argparse."""
     file = output_file(text)
-    if file.suffix.lower() not in PAGES:
-        raise argparse.ArgumentTypeError(f'{text!r} does not end in one of {", ".join(PAGES)}')
+    if file.suffix.lower() not in endings:
+        raise argparse.ArgumentTypeError(f'{text!r} does not end in one of {", ".join(endings)}')
     return file
 
 

@@ -137,7 +137,7 @@ class WatchNode(Node):
         self._images.forget()
 
     def _look(self) -> None:
-        """Tell the page whether the planning node is there; end requests when it is not."""
+        """Report to the page whether the planning node runs, and end requests if it does not."""
         runs = self.count_publishers(f'{self._planner}/outcome') > 0
         if runs == self._runs:
             return

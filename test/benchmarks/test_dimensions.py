@@ -11,7 +11,7 @@ pytestmark = pytest.mark.interpreted
 
 @pytest.mark.parametrize('name', PROBLEMS)
 def test_the_judge_knows_the_free_space(name):
-    """The start and the goal are free, the segment between them is not; likewise for ours."""
+    """Our space and the judge agree: the ends of a request are free, its segment is not."""
     rng = np.random.default_rng(0)
     for course, request in islice(instances(name, 0), 2):
         space = course.space()
