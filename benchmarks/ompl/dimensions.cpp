@@ -16,10 +16,8 @@
 #include <algorithm>
 #include <cmath>
 #include <ctime>
-#include <functional>
 #include <iomanip>
 #include <iostream>
-#include <map>
 #include <memory>
 #include <sstream>
 #include <string>
@@ -39,6 +37,7 @@
 #include <ompl/util/Console.h>
 #include <ompl/util/RandomNumbers.h>
 
+#include "named_planners.hpp"
 #include "solids.hpp"
 
 namespace ob = ompl::base;
@@ -47,19 +46,12 @@ namespace og = ompl::geometric;
 namespace
 {
 
-const std::string SIMPLIFY = "+simplify", SHORTEN = "+shorten";
+const std::string SHORTEN = "+shorten";
 const double STOP_BEFORE = 1e-9;
 
 using States = std::shared_ptr<ob::RealVectorStateSpace>;
 
-template<typename Planner>
-ob::PlannerPtr make(const ob::SpaceInformationPtr & si)
-{
-  return std::make_shared<Planner>(si);
-}
-
-const std::map<std::string, std::function<ob::PlannerPtr(const ob::SpaceInformationPtr &)>>
-PLANNERS = {
+const NamedPlanners PLANNERS = {
   {"RRTConnect", make<og::RRTConnect>}, {"BKPIECE1", make<og::BKPIECE1>},
   {"LBKPIECE1", make<og::LBKPIECE1>}, {"SBL", make<og::SBL>}, {"BiEST", make<og::BiEST>},
 };

@@ -11,10 +11,8 @@
 // tested exactly, cell by cell, so that no path leads through a thin wall.
 
 #include <chrono>
-#include <functional>
 #include <iomanip>
 #include <iostream>
-#include <map>
 #include <memory>
 #include <sstream>
 #include <stdexcept>
@@ -37,6 +35,7 @@
 #include <ompl/util/RandomNumbers.h>
 
 #include "grid.hpp"
+#include "named_planners.hpp"
 #include "validity.hpp"
 
 namespace og = ompl::geometric;
@@ -47,16 +46,7 @@ namespace
 using Clock = std::chrono::steady_clock;
 using Seconds = std::chrono::duration<double>;
 
-const std::string SIMPLIFY = "+simplify";
-
-template<typename Planner>
-ob::PlannerPtr make(const ob::SpaceInformationPtr & si)
-{
-  return std::make_shared<Planner>(si);
-}
-
-const std::map<std::string, std::function<ob::PlannerPtr(const ob::SpaceInformationPtr &)>>
-PLANNERS = {
+const NamedPlanners PLANNERS = {
   {"RRTConnect", make<og::RRTConnect>}, {"BKPIECE1", make<og::BKPIECE1>},
   {"KPIECE1", make<og::KPIECE1>}, {"RRT", make<og::RRT>}, {"EST", make<og::EST>},
   {"SBL", make<og::SBL>}, {"RRTstar", make<og::RRTstar>},

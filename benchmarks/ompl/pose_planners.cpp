@@ -12,10 +12,8 @@
 // cells; a motion as OMPL does it, at states no farther apart than STEP.
 
 #include <ctime>
-#include <functional>
 #include <iostream>
 #include <limits>
-#include <map>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -37,6 +35,7 @@
 
 #include "footprint.hpp"
 #include "grid.hpp"
+#include "named_planners.hpp"
 
 namespace ob = ompl::base;
 namespace og = ompl::geometric;
@@ -46,16 +45,7 @@ namespace
 
 using Car = ob::ReedsSheppStateSpace;
 
-const std::string SIMPLIFY = "+simplify";
-
-template<typename Planner>
-ob::PlannerPtr make(const ob::SpaceInformationPtr & si)
-{
-  return std::make_shared<Planner>(si);
-}
-
-const std::map<std::string, std::function<ob::PlannerPtr(const ob::SpaceInformationPtr &)>>
-PLANNERS = {
+const NamedPlanners PLANNERS = {
   {"RRTConnect", make<og::RRTConnect>}, {"BiTRRT", make<og::BiTRRT>},
   {"BKPIECE1", make<og::BKPIECE1>}, {"BiEST", make<og::BiEST>}, {"RRT", make<og::RRT>},
 };
