@@ -27,11 +27,11 @@ from hnr_planner.core import GridSpace, plan
 from hnr_planner.core.lengths import path_length
 from hnr_planner.core.planning.homology import islands_at, signature
 from hnr_planner.maps import OccupancyMap
-from hnr_planner.server.map_store import MapStore
+from hnr_planner.server.map.map_store import MapStore
+from hnr_planner.server.parameters.settings import DEFAULTS
+from hnr_planner.server.planning.respond import only_same_frame
 from hnr_planner.server.planning_server import PlanningServer
-from hnr_planner.server.requests import PlanRequest, Pose
-from hnr_planner.server.respond import only_same_frame
-from hnr_planner.server.settings import DEFAULTS
+from hnr_planner.server.requests.plan_request import PlanRequest, Pose
 import numpy as np
 from numpy.typing import NDArray
 

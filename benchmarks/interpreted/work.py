@@ -19,11 +19,11 @@ from hnr_planner.core.spaces.grid.components import nearest_in_component
 from hnr_planner.core.spaces.grid.slabs import build_slabs
 from hnr_planner.experiments.requests import far_pairs
 from hnr_planner.maps import load_map, OccupancyMap
-from hnr_planner.server.map_store import MapStore
-from hnr_planner.server.requests import PlanRequest, Pose
-from hnr_planner.server.respond import respond
+from hnr_planner.server.map.map_store import MapStore
+from hnr_planner.server.parameters.settings import DEFAULTS, Settings
+from hnr_planner.server.planning.respond import respond
+from hnr_planner.server.requests.plan_request import PlanRequest, Pose
 from hnr_planner.server.sampling import draw
-from hnr_planner.server.settings import DEFAULTS, Settings
 import numpy as np
 
 #: Side [cells] and number of boxes of the map that is made here.

@@ -86,7 +86,7 @@ def pose_space(arguments: argparse.Namespace, grid: GridSpace) -> PoseSpace | No
 
     """
     from hnr_planner.core import PoseSpace
-    from hnr_planner.server.robot import outline
+    from hnr_planner.server.parameters.robot import outline
 
     values: dict[str, Any] = vars(arguments)
     given = {name: values[name] for name in NEED_FOOTPRINT if values.get(name) is not None}

@@ -6,10 +6,10 @@ This module does not import Nav2. The names of error codes are those of the ROS 
 
 from collections.abc import Sequence
 
-from hnr_planner.server.outcomes import Outcome
-from hnr_planner.server.requests import NOWHERE, PlanRequest, Pose
-from hnr_planner.server.responses import PlanResponse
-from hnr_planner.server.settings import Settings
+from hnr_planner.server.parameters.settings import Settings
+from hnr_planner.server.requests.outcomes import Outcome
+from hnr_planner.server.requests.plan_request import NOWHERE, PlanRequest, Pose
+from hnr_planner.server.responses.plan_response import PlanResponse
 
 #: The name of Nav2's error code for each outcome; an outcome that is not listed is UNKNOWN, and
 #: the error message names it.

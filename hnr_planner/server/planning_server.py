@@ -7,18 +7,20 @@ import traceback
 from typing import TypeVar
 
 from hnr_planner.core.planning.planner import Planner
-from hnr_planner.server.kept_route import LastRoutes
-from hnr_planner.server.map_store import MapSnapshot
-from hnr_planner.server.outcomes import Outcome, Refusal
-from hnr_planner.server.requests import PlanRequest
-from hnr_planner.server.respond import respond, ToFrame
-from hnr_planner.server.responses import PlanResponse, Response, SampleResponse
-from hnr_planner.server.roadmaps import Roadmaps
+from hnr_planner.server.map.map_store import MapSnapshot
+from hnr_planner.server.map.roadmaps import Roadmaps
+from hnr_planner.server.map.waiting import NewestMap
+from hnr_planner.server.parameters.settings import Settings
+from hnr_planner.server.planning.respond import respond, ToFrame
+from hnr_planner.server.requests.outcomes import Outcome, Refusal
+from hnr_planner.server.requests.plan_request import PlanRequest
+from hnr_planner.server.requests.searches import RunningSearches
+from hnr_planner.server.responses.plan_response import PlanResponse
+from hnr_planner.server.responses.response import Response
+from hnr_planner.server.responses.sample_response import SampleResponse
+from hnr_planner.server.responses.statistics import Statistics
+from hnr_planner.server.routes.last_routes import LastRoutes
 from hnr_planner.server.sampling import draw
-from hnr_planner.server.searches import RunningSearches
-from hnr_planner.server.settings import Settings
-from hnr_planner.server.statistics import Statistics
-from hnr_planner.server.waiting import NewestMap
 
 Some = TypeVar('Some', bound=Response)
 

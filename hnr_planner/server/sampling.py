@@ -10,11 +10,12 @@ from hnr_planner.core.kernels.clock import working_time
 from hnr_planner.core.kernels.interruption import interruptible
 from hnr_planner.core.kernels.kernel import interpreted_calls
 from hnr_planner.core.planning.tiers import remark_since, tier_since
-from hnr_planner.server.map_store import MapSnapshot
-from hnr_planner.server.outcomes import Outcome, Refusal
-from hnr_planner.server.responses import SampleResponse
-from hnr_planner.server.settings import Settings
-from hnr_planner.server.waiting import NewestMap, wait_for_map
+from hnr_planner.server.map.map_store import MapSnapshot
+from hnr_planner.server.map.waiting import NewestMap, wait_for_map
+from hnr_planner.server.parameters.arguments import sample_arguments
+from hnr_planner.server.parameters.settings import Settings
+from hnr_planner.server.requests.outcomes import Outcome, Refusal
+from hnr_planner.server.responses.sample_response import SampleResponse
 
 
 def draw(settings: Settings, newest_map: NewestMap, cancel: threading.Event) -> SampleResponse:
@@ -66,7 +67,7 @@ def _draw(settings: Settings, snapshot: MapSnapshot, ending: _Ending) -> FreeSpa
     """Return draws of ``snapshot``, or raise Refusal (BAD_REQUEST, CANCELLED, TIMEOUT)."""
     try:
         with interruptible(ending.is_set):
-            return sample_free_space(snapshot.space, cancel=ending, **settings.sample_arguments)
+            return sample_free_space(snapshot.space, cancel=ending, **sample_arguments(settings))
     except SpaceError as error:
         raise Refusal(Outcome.BAD_REQUEST, f'nothing can be drawn of this map: {error}') from error
     except StuckError as error:

@@ -11,7 +11,7 @@ from hnr_planner.maps import OccupancyMap
 from hnr_planner.ros.map.subscription import MapSubscription
 from hnr_planner.ros.map.updates import MapUpdates
 from hnr_planner.ros.messages.maps import map_from_message, map_with_update
-from hnr_planner.server.received_maps import MapError
+from hnr_planner.server.map.received_maps import MapError
 from hnr_planner.watch.map_images import MapImages
 from hnr_planner.watch.reading import read_cloud, read_path, stamp_of
 from hnr_planner.watch.searches import Search, Searches

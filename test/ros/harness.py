@@ -21,7 +21,7 @@ from geometry_msgs.msg import PoseStamped
 from hnr_planner.maps import OccupancyMap
 from hnr_planner.ros.messages.maps import message_from_map
 from hnr_planner.ros.messages.outcomes import read_outcome
-from hnr_planner.server.outcomes import Outcome
+from hnr_planner.server.requests.outcomes import Outcome
 from nav_msgs.msg import OccupancyGrid
 from nav_msgs.msg import Path as PathMessage
 from nav_msgs.srv import GetPlan

@@ -13,7 +13,7 @@ from test.ros.harness import (
 from typing import Any
 
 from geometry_msgs.msg import PoseStamped
-from hnr_planner.server.outcomes import Outcome
+from hnr_planner.server.requests.outcomes import Outcome
 from nav_msgs.msg import OccupancyGrid
 import pytest
 

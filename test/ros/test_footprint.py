@@ -19,8 +19,8 @@ from typing import Any
 
 from hnr_planner.core.kernels.modes import VARIABLE
 from hnr_planner.ros.messages.paths import poses_from_path
-from hnr_planner.server.outcomes import Outcome
-from hnr_planner.server.pose_motions import twists_between
+from hnr_planner.server.geometry.pose_motions import twists_between
+from hnr_planner.server.requests.outcomes import Outcome
 from nav_msgs.msg import Path
 import numpy as np
 import pytest

@@ -3,7 +3,7 @@
 from importlib.util import find_spec
 from test.ros.harness import Client, free_map, grid_message, LATCHED, NodeProcess, pose, until
 
-from hnr_planner.server.outcomes import Outcome
+from hnr_planner.server.requests.outcomes import Outcome
 from nav_msgs.msg import OccupancyGrid
 import numpy as np
 import pytest

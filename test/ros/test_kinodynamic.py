@@ -6,7 +6,7 @@ from test.ros.harness import Client, grid_message, NodeProcess, points_of, pose
 from test.ros.rooms import DATA, GOAL, ORIGIN, RESOLUTION, START
 from typing import Any
 
-from hnr_planner.server.outcomes import Outcome
+from hnr_planner.server.requests.outcomes import Outcome
 import numpy as np
 import pytest
 from trajectory_msgs.msg import MultiDOFJointTrajectory

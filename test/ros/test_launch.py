@@ -13,7 +13,7 @@ from test.ros.harness import Client, pose, until
 from test.ros.test_lifecycle import ACTIVE, state, UNCONFIGURED
 from typing import Any
 
-from hnr_planner.server.outcomes import Outcome
+from hnr_planner.server.requests.outcomes import Outcome
 import pytest
 import yaml
 

@@ -20,7 +20,7 @@ from test.ros.harness import (
 )
 
 from diagnostic_msgs.msg import DiagnosticArray
-from hnr_planner.server.outcomes import Outcome
+from hnr_planner.server.requests.outcomes import Outcome
 from lifecycle_msgs.msg import Transition
 from lifecycle_msgs.srv import ChangeState, GetState
 import pytest

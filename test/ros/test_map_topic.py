@@ -19,7 +19,7 @@ from test.ros.harness import (
 import time
 
 from diagnostic_msgs.msg import DiagnosticArray
-from hnr_planner.server.outcomes import Outcome
+from hnr_planner.server.requests.outcomes import Outcome
 from nav_msgs.msg import OccupancyGrid
 import pytest
 from rclpy.publisher import Publisher

@@ -17,12 +17,12 @@ from hnr_planner.ros.messages.paths import path_message, serialised_path
 from hnr_planner.ros.messages.plan_responses import PlanResponses
 from hnr_planner.ros.messages.samples import LAYOUT, serialised_samples
 from hnr_planner.ros.messages.trajectories import serialised_trajectory
-from hnr_planner.server.map_store import MapSnapshot
-from hnr_planner.server.outcomes import Outcome
-from hnr_planner.server.received_maps import as_written, MapError
-from hnr_planner.server.requests import PlanRequest, Pose
-from hnr_planner.server.responses import PlanResponse
-from hnr_planner.server.shapes import MOST_POINTS
+from hnr_planner.server.map.map_store import MapSnapshot
+from hnr_planner.server.map.received_maps import as_written, MapError
+from hnr_planner.server.requests.outcomes import Outcome
+from hnr_planner.server.requests.plan_request import PlanRequest, Pose
+from hnr_planner.server.responses.plan_response import PlanResponse
+from hnr_planner.server.responses.shapes import MOST_POINTS
 from nav_msgs.msg import OccupancyGrid
 from nav_msgs.msg import Path as PathMessage
 from nav_msgs.srv import GetPlan

@@ -15,7 +15,7 @@ from hnr_planner.core.planning.registry import PlannerEntry, PLANNERS
 from hnr_planner.core.trajectories.registry import KINODYNAMIC_ENTRIES
 from hnr_planner.ros.messages.outcomes import read_outcome
 from hnr_planner.ros.node.planner import SERVICES
-from hnr_planner.server.outcomes import Outcome
+from hnr_planner.server.requests.outcomes import Outcome
 from nav_msgs.msg import OccupancyGrid
 from nav_msgs.srv import GetMap, GetPlan
 import pytest

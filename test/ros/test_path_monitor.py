@@ -12,7 +12,7 @@ from test.ros.harness import (
 )
 
 from hnr_planner.ros.messages.outcomes import read_outcome
-from hnr_planner.server.outcomes import Outcome
+from hnr_planner.server.requests.outcomes import Outcome
 import numpy as np
 import pytest
 from std_msgs.msg import Bool

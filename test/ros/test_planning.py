@@ -17,7 +17,7 @@ from test.ros.rooms import DATA, GOAL, in_map, ORIGIN, RESOLUTION, START
 import time
 
 from diagnostic_msgs.msg import DiagnosticArray
-from hnr_planner.server.outcomes import Outcome
+from hnr_planner.server.requests.outcomes import Outcome
 from nav_msgs.msg import Path
 import numpy as np
 import pytest

@@ -17,7 +17,7 @@ from test.ros.harness import (
 
 from geometry_msgs.msg import PoseStamped, PoseWithCovarianceStamped
 from hnr_planner.ros.messages.outcomes import read_outcome
-from hnr_planner.server.outcomes import Outcome
+from hnr_planner.server.requests.outcomes import Outcome
 import pytest
 from rclpy.publisher import Publisher
 

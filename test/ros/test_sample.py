@@ -12,7 +12,7 @@ from test.ros.harness import (
     result_of,
 )
 
-from hnr_planner.server.outcomes import Outcome
+from hnr_planner.server.requests.outcomes import Outcome
 import numpy as np
 import pytest
 from scipy import ndimage, stats

@@ -15,7 +15,7 @@ from test.ros.harness import (
 )
 import time
 
-from hnr_planner.server.outcomes import Outcome
+from hnr_planner.server.requests.outcomes import Outcome
 import pytest
 
 SIGNALS = [(SIGINT,), (SIGTERM,), (SIGINT, SIGINT), (SIGINT, SIGTERM)]

@@ -17,9 +17,9 @@ from test.ros.harness import (
     until,
 )
 
-from hnr_planner.server.outcomes import Outcome
-from hnr_planner.server.request_log import LONGEST_LINE
-from hnr_planner.server.settings import RULES
+from hnr_planner.server.parameters.settings import RULES
+from hnr_planner.server.requests.outcomes import Outcome
+from hnr_planner.server.responses.request_log import LONGEST_LINE
 import pytest
 
 #: A file with a name that is misspelt and one that is not.

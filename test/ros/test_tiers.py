@@ -15,7 +15,7 @@ from typing import Any
 
 from hnr_planner.core.kernels.cache_folder import cache_folder
 from hnr_planner.core.kernels.modes import VARIABLE
-from hnr_planner.server.outcomes import Outcome
+from hnr_planner.server.requests.outcomes import Outcome
 import numpy as np
 import pytest
 

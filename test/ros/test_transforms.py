@@ -17,7 +17,7 @@ from test.ros.harness import (
 import time
 
 from geometry_msgs.msg import PoseStamped, TransformStamped
-from hnr_planner.server.outcomes import Outcome
+from hnr_planner.server.requests.outcomes import Outcome
 import numpy as np
 import pytest
 

@@ -5,7 +5,7 @@ from test.ros.harness import Client, grid_message, node_process, pose, two_rooms
 from xml.etree import ElementTree
 
 from hnr_planner.ros.messages.samples import LAYOUT
-from hnr_planner.server.settings import DEFAULTS
+from hnr_planner.server.parameters.settings import DEFAULTS
 import pytest
 import rclpy
 

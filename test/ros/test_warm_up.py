@@ -9,10 +9,10 @@ import threading
 
 from hnr_planner.core import ALGORITHMS, warm_up
 from hnr_planner.maps import OccupancyMap
-from hnr_planner.server.map_store import MapStore
-from hnr_planner.server.respond import respond
-from hnr_planner.server.requests import PlanRequest, Pose
-from hnr_planner.server.settings import Settings
+from hnr_planner.server.map.map_store import MapStore
+from hnr_planner.server.planning.respond import respond
+from hnr_planner.server.requests.plan_request import PlanRequest, Pose
+from hnr_planner.server.parameters.settings import Settings
 from numba.core.dispatcher import Dispatcher
 import numpy as np
 

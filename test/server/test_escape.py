@@ -5,7 +5,7 @@ import math
 from test.brute_force import path_collisions
 from test.server.test_requests import ask, ChangingMap, rooms, SETTINGS, store
 
-from hnr_planner.server.outcomes import Outcome
+from hnr_planner.server.requests.outcomes import Outcome
 import numpy as np
 import pytest
 

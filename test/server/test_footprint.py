@@ -8,19 +8,20 @@ import threading
 from typing import Any
 
 from hnr_planner.maps import OccupancyMap
-from hnr_planner.server.map_store import MapStore
-from hnr_planner.server.orientations import quaternion_of, yaw_of
-from hnr_planner.server.outcomes import Outcome
-from hnr_planner.server.path_monitor import PathMonitor
-from hnr_planner.server.path_validity import judge_path
-from hnr_planner.server.pose_motions import LARGEST_TURN, poses_of, twists_between
-from hnr_planner.server.requests import PlanRequest, Pose
-from hnr_planner.server.respond import respond
-from hnr_planner.server.responses import PlanResponse
-from hnr_planner.server.rules import SettingsError
+from hnr_planner.server.geometry.orientations import quaternion_of, yaw_of
+from hnr_planner.server.geometry.pose_motions import LARGEST_TURN, poses_of, twists_between
+from hnr_planner.server.map.map_store import MapStore
+from hnr_planner.server.parameters.arguments import pose_space_arguments
+from hnr_planner.server.parameters.rules import SettingsError
+from hnr_planner.server.parameters.settings import DEFAULTS, Settings
+from hnr_planner.server.planning.respond import respond
+from hnr_planner.server.requests.outcomes import Outcome
+from hnr_planner.server.requests.plan_request import PlanRequest, Pose
+from hnr_planner.server.responses.plan_response import PlanResponse
+from hnr_planner.server.responses.shapes import search_shapes
 from hnr_planner.server.sampling import draw
-from hnr_planner.server.settings import DEFAULTS, Settings
-from hnr_planner.server.shapes import search_shapes
+from hnr_planner.server.validity.path_monitor import PathMonitor
+from hnr_planner.server.validity.path_validity import judge_path
 import numpy as np
 import pytest
 
@@ -214,7 +215,7 @@ def test_text_of_no_polygon_is_refused_when_it_is_set(footprint: str, words: str
 def test_a_robot_without_a_footprint_is_a_circle() -> None:
     for footprint in ('[]', '', ' [] '):
         settings = replace(SETTINGS, footprint=footprint, drive='car')
-        assert settings.vertices == () and settings.pose_space_arguments is None
+        assert settings.vertices == () and pose_space_arguments(settings) is None
         assert store(settings).newest().pose_space is None
     assert ROBOT.vertices == VERTICES
 

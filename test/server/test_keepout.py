@@ -6,11 +6,11 @@ from test.brute_force import path_collisions
 from test.server.test_requests import ask, RESOLUTION, SETTINGS, store
 
 from hnr_planner.maps import OccupancyMap
-from hnr_planner.server.keepout import zones_on
-from hnr_planner.server.map_store import MapStore
-from hnr_planner.server.outcomes import Outcome
-from hnr_planner.server.received_maps import MapError
-from hnr_planner.server.settings import Settings
+from hnr_planner.server.map.keepout import zones_on
+from hnr_planner.server.map.map_store import MapStore
+from hnr_planner.server.map.received_maps import MapError
+from hnr_planner.server.parameters.settings import Settings
+from hnr_planner.server.requests.outcomes import Outcome
 import numpy as np
 import pytest
 

@@ -10,13 +10,13 @@ import threading
 
 from hnr_planner.core import GridSpace
 from hnr_planner.core.lengths import path_length
-from hnr_planner.server.kept_route import next_vertex
-from hnr_planner.server.outcomes import Outcome
+from hnr_planner.server.planning.respond import only_same_frame
 from hnr_planner.server.planning_server import PlanningServer
-from hnr_planner.server.requests import PlanRequest, Pose
-from hnr_planner.server.respond import only_same_frame
-from hnr_planner.server.responses import PlanResponse
-from hnr_planner.server.route_class import detour, Landmarks, route_class
+from hnr_planner.server.requests.outcomes import Outcome
+from hnr_planner.server.requests.plan_request import PlanRequest, Pose
+from hnr_planner.server.responses.plan_response import PlanResponse
+from hnr_planner.server.routes.last_routes import next_vertex
+from hnr_planner.server.routes.route_class import detour, Landmarks, route_class
 import numpy as np
 import pytest
 

@@ -4,8 +4,8 @@ import threading
 import time
 
 from hnr_planner.core.kernels.kernel import interpreted, kernel
-from hnr_planner.server.limits import RequestLimits, SHORTEST_TIME
-from hnr_planner.server.outcomes import Outcome, Refusal
+from hnr_planner.server.requests.limits import RequestLimits, SHORTEST_TIME
+from hnr_planner.server.requests.outcomes import Outcome, Refusal
 import pytest
 
 

@@ -4,8 +4,8 @@ from dataclasses import replace
 from test.server.test_requests import rooms
 
 from hnr_planner.maps import OccupancyMap
-from hnr_planner.server.map_advice import MapAdvice
-from hnr_planner.server.settings import DEFAULTS, Settings
+from hnr_planner.server.map.map_advice import MapAdvice
+from hnr_planner.server.parameters.settings import DEFAULTS, Settings
 import pytest
 
 MAP = OccupancyMap(rooms(), 0.1)

@@ -10,12 +10,12 @@ from xml.etree import ElementTree
 
 from hnr_planner.core import ALGORITHMS
 from hnr_planner.server.nav2 import error_name, goal_request
-from hnr_planner.server.outcomes import Outcome
-from hnr_planner.server.path_validity import blocked_poses, judge_path, nearest_pose
-from hnr_planner.server.requests import Pose
-from hnr_planner.server.respond import respond
-from hnr_planner.server.responses import PlanResponse
-from hnr_planner.server.settings import DEFAULTS, RULES, Settings
+from hnr_planner.server.parameters.settings import DEFAULTS, RULES, Settings
+from hnr_planner.server.planning.respond import respond
+from hnr_planner.server.requests.outcomes import Outcome
+from hnr_planner.server.requests.plan_request import Pose
+from hnr_planner.server.responses.plan_response import PlanResponse
+from hnr_planner.server.validity.path_validity import blocked_poses, judge_path, nearest_pose
 import numpy as np
 import pytest
 import yaml

@@ -3,10 +3,10 @@
 from test.server.test_requests import ask, receive, rooms, store
 import weakref
 
-from hnr_planner.server.map_store import MapStore
-from hnr_planner.server.outcomes import Outcome
-from hnr_planner.server.path_monitor import PathMonitor
-from hnr_planner.server.responses import PlanResponse
+from hnr_planner.server.map.map_store import MapStore
+from hnr_planner.server.requests.outcomes import Outcome
+from hnr_planner.server.responses.plan_response import PlanResponse
+from hnr_planner.server.validity.path_monitor import PathMonitor
 import pytest
 
 Report = tuple[bool, str, PlanResponse | None]

@@ -8,9 +8,9 @@ from test.server.test_requests import GOAL, rooms, store
 import time
 
 from hnr_planner.maps import load_map
-from hnr_planner.server.map_store import MapStore
-from hnr_planner.server.path_validity import first_blocked_pose, judge_path
-from hnr_planner.server.settings import DEFAULTS
+from hnr_planner.server.map.map_store import MapStore
+from hnr_planner.server.parameters.settings import DEFAULTS
+from hnr_planner.server.validity.path_validity import first_blocked_pose, judge_path
 import numpy as np
 import pytest
 import yaml

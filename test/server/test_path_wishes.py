@@ -2,9 +2,9 @@
 
 from types import SimpleNamespace
 
-from hnr_planner.server.outcomes import Outcome, Refusal
-from hnr_planner.server.path_wishes import PathWishes
-from hnr_planner.server.settings import Settings
+from hnr_planner.server.parameters.settings import Settings
+from hnr_planner.server.requests.outcomes import Outcome, Refusal
+from hnr_planner.server.validity.path_wishes import PathWishes
 import pytest
 
 

@@ -2,12 +2,12 @@
 
 from test.server.test_requests import GOAL, rooms, SETTINGS, store
 
-from hnr_planner.server.map_store import MapSnapshot
-from hnr_planner.server.outcomes import Outcome
+from hnr_planner.server.map.map_store import MapSnapshot
+from hnr_planner.server.map.waiting import NewestMap
+from hnr_planner.server.planning.respond import only_same_frame
 from hnr_planner.server.planning_server import PlanningServer
-from hnr_planner.server.requests import PlanRequest, Pose
-from hnr_planner.server.respond import only_same_frame
-from hnr_planner.server.waiting import NewestMap
+from hnr_planner.server.requests.outcomes import Outcome
+from hnr_planner.server.requests.plan_request import PlanRequest, Pose
 
 REQUEST = PlanRequest(Pose((0.5, 0.5, 0.0)), Pose((*GOAL, 0.0)), 0.0, 'rrt')
 

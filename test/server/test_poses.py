@@ -2,7 +2,7 @@
 
 import math
 
-from hnr_planner.server.orientations import (
+from hnr_planner.server.geometry.orientations import (
     normalised,
     product,
     quaternion_of,
@@ -10,8 +10,8 @@ from hnr_planner.server.orientations import (
     tilt_of,
     yaw_of,
 )
-from hnr_planner.server.poses import MOST_POSES, pose_rows
-from hnr_planner.server.subsample import subsample_tree
+from hnr_planner.server.geometry.poses import MOST_POSES, pose_rows
+from hnr_planner.server.responses.subsample import subsample_tree
 import numpy as np
 import pytest
 

@@ -3,8 +3,8 @@
 from dataclasses import replace
 from test.server.test_requests import ask, rooms, store
 
-from hnr_planner.server.outcomes import Outcome
-from hnr_planner.server.request_log import LONGEST_LINE, RequestLog, SLOW
+from hnr_planner.server.requests.outcomes import Outcome
+from hnr_planner.server.responses.request_log import LONGEST_LINE, RequestLog, SLOW
 import pytest
 
 SOLVED = replace(ask(store(rooms())), elapsed=0.1)

@@ -9,13 +9,13 @@ import time
 
 from hnr_planner.core import ALGORITHMS
 from hnr_planner.maps import OccupancyMap
-from hnr_planner.server.map_store import MapSnapshot, MapStore
-from hnr_planner.server.outcomes import Outcome
-from hnr_planner.server.received_maps import MapError
-from hnr_planner.server.requests import PlanRequest, Pose
-from hnr_planner.server.respond import respond
-from hnr_planner.server.responses import PlanResponse
-from hnr_planner.server.settings import DEFAULTS, Settings
+from hnr_planner.server.map.map_store import MapSnapshot, MapStore
+from hnr_planner.server.map.received_maps import MapError
+from hnr_planner.server.parameters.settings import DEFAULTS, Settings
+from hnr_planner.server.planning.respond import respond
+from hnr_planner.server.requests.outcomes import Outcome
+from hnr_planner.server.requests.plan_request import PlanRequest, Pose
+from hnr_planner.server.responses.plan_response import PlanResponse
 import numpy as np
 import pytest
 

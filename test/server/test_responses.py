@@ -6,9 +6,9 @@ from test.server.test_planning_server import REQUEST, server
 from test.server.test_requests import ask, maze, receive, RESOLUTION, rooms, SETTINGS, store
 import time
 
-from hnr_planner.server.map_store import MapSnapshot
-from hnr_planner.server.outcomes import Outcome
-from hnr_planner.server.statistics import Statistics
+from hnr_planner.server.map.map_store import MapSnapshot
+from hnr_planner.server.requests.outcomes import Outcome
+from hnr_planner.server.responses.statistics import Statistics
 import numpy as np
 import pytest
 

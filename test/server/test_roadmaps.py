@@ -7,11 +7,11 @@ from test.ros.harness import until
 from test.server.test_planning_server import REQUEST
 from test.server.test_requests import receive, RESOLUTION, rooms, SETTINGS, store
 
-from hnr_planner.server.outcomes import Outcome
+from hnr_planner.server.map.roadmaps import Roadmaps
+from hnr_planner.server.planning.respond import only_same_frame
 from hnr_planner.server.planning_server import PlanningServer
-from hnr_planner.server.requests import PlanRequest
-from hnr_planner.server.respond import only_same_frame
-from hnr_planner.server.roadmaps import Roadmaps
+from hnr_planner.server.requests.outcomes import Outcome
+from hnr_planner.server.requests.plan_request import PlanRequest
 import pytest
 
 AUTO = replace(REQUEST, algorithm='auto')

@@ -6,8 +6,13 @@ from pathlib import Path
 from typing import Any
 
 from hnr_planner.core import KINODYNAMIC_PLANNERS
-from hnr_planner.server.rules import SettingsError
-from hnr_planner.server.settings import DEFAULTS, RULES, Settings
+from hnr_planner.server.parameters.arguments import (
+    plan_arguments,
+    sample_arguments,
+    trajectory_arguments,
+)
+from hnr_planner.server.parameters.rules import SettingsError
+from hnr_planner.server.parameters.settings import DEFAULTS, RULES, Settings
 import pytest
 import yaml
 
@@ -115,16 +120,16 @@ def test_first_map_is_awaited_within_the_time_limit() -> None:
 
 def test_trajectory_that_is_not_shortened_is_not_optimized_either() -> None:
     for algorithm in KINODYNAMIC_PLANNERS:
-        arguments = Settings(simplify=False).trajectory_arguments(algorithm, goal_is_moved=False)
+        arguments = trajectory_arguments(Settings(simplify=False), algorithm, goal_is_moved=False)
         assert (arguments['simplify'], arguments['optimize_for']) == (False, 0.0)
-        arguments = Settings().trajectory_arguments(algorithm, goal_is_moved=False)
+        arguments = trajectory_arguments(Settings(), algorithm, goal_is_moved=False)
         assert arguments['optimize_for'] == Settings().optimize_for > 0.0
-    assert Settings(simplify=False).plan_arguments['optimize_for'] > 0.0
+    assert plan_arguments(Settings(simplify=False))['optimize_for'] > 0.0
 
 
 def test_no_seed_and_no_limit_reach_the_planner_as_none() -> None:
-    assert Settings().plan_arguments['seed'] is None
-    assert Settings().sample_arguments['seed'] is None
-    assert Settings().plan_arguments['max_iterations'] is None
-    chosen = Settings(seed=0, max_iterations=5).plan_arguments
+    assert plan_arguments(Settings())['seed'] is None
+    assert sample_arguments(Settings())['seed'] is None
+    assert plan_arguments(Settings())['max_iterations'] is None
+    chosen = plan_arguments(Settings(seed=0, max_iterations=5))
     assert (chosen['seed'], chosen['max_iterations']) == (0, 5)

@@ -7,10 +7,10 @@ import threading
 from typing import Any
 
 from hnr_planner.server.nav2 import goal_request
-from hnr_planner.server.outcomes import Outcome
-from hnr_planner.server.requests import Pose
-from hnr_planner.server.respond import respond
-from hnr_planner.server.responses import PlanResponse
+from hnr_planner.server.planning.respond import respond
+from hnr_planner.server.requests.outcomes import Outcome
+from hnr_planner.server.requests.plan_request import Pose
+from hnr_planner.server.responses.plan_response import PlanResponse
 
 #: Points of the first room, in an order that turns back twice.
 ZIGZAG = [(1.5, 0.3), (0.8, 0.3), (1.2, 0.3)]

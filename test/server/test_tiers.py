@@ -12,11 +12,11 @@ from dataclasses import replace
 import threading
 
 from hnr_planner.maps import OccupancyMap
-from hnr_planner.server.map_store import MapStore
-from hnr_planner.server.requests import PlanRequest, Pose
-from hnr_planner.server.respond import respond
+from hnr_planner.server.map.map_store import MapStore
+from hnr_planner.server.requests.plan_request import PlanRequest, Pose
+from hnr_planner.server.planning.respond import respond
 from hnr_planner.server.sampling import draw
-from hnr_planner.server.settings import Settings
+from hnr_planner.server.parameters.settings import Settings
 import numpy as np
 
 data = np.zeros((401, 401), dtype=np.int8)

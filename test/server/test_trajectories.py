@@ -4,9 +4,9 @@ from test.brute_force import path_collisions
 
 from hnr_planner.core import GridSpace
 from hnr_planner.core.systems import DoubleIntegrator, Trajectory
-from hnr_planner.server.outcomes import Outcome, Refusal
-from hnr_planner.server.poses import MOST_POSES
-from hnr_planner.server.trajectories import SAG, trajectory_path, yaws_along
+from hnr_planner.server.geometry.poses import MOST_POSES
+from hnr_planner.server.geometry.trajectories import SAG, trajectory_path, yaws_along
+from hnr_planner.server.requests.outcomes import Outcome, Refusal
 import numpy as np
 import pytest
 

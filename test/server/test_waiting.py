@@ -4,10 +4,10 @@ from dataclasses import replace
 from test.server.test_requests import ask, receive, rooms, SETTINGS
 import threading
 
-from hnr_planner.server.map_store import MapSnapshot, MapStore
-from hnr_planner.server.outcomes import Outcome, Refusal
+from hnr_planner.server.map.map_store import MapSnapshot, MapStore
+from hnr_planner.server.map.waiting import wait_for_map
+from hnr_planner.server.requests.outcomes import Outcome, Refusal
 from hnr_planner.server.sampling import draw
-from hnr_planner.server.waiting import wait_for_map
 import pytest
 
 PATIENT = replace(SETTINGS, map_wait=3600.0)

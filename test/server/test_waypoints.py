@@ -3,7 +3,7 @@
 from itertools import pairwise
 
 from hnr_planner.core import GridSpace, plan, PlanResult
-from hnr_planner.server.waypoints import joined
+from hnr_planner.server.planning.waypoints import joined
 import numpy as np
 import pytest
 

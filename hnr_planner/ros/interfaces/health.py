@@ -8,7 +8,7 @@ from hnr_planner.ros.interfaces.publisher import NO_EVENTS
 from hnr_planner.ros.interfaces.request_server import RequestServer
 from hnr_planner.ros.map.map_input import MapInput
 from hnr_planner.ros.messages.outcomes import health_message
-from hnr_planner.server.outcomes import Refusal
+from hnr_planner.server.requests.outcomes import Refusal
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
 from rclpy.clock import Clock, ClockType
 from rclpy.node import Node

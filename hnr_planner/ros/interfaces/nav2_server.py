@@ -14,16 +14,16 @@ from geometry_msgs.msg import PoseStamped
 from hnr_planner.ros.interfaces.request_server import RequestServer
 from hnr_planner.ros.messages.action_results import PathResults
 from hnr_planner.ros.messages.paths import pose_from_message, poses_from_path
+from hnr_planner.server.map.waiting import NewestMap
 from hnr_planner.server.nav2 import error_name, goal_request, robot_pose
-from hnr_planner.server.outcomes import Refusal
-from hnr_planner.server.path_validity import judge_path
-from hnr_planner.server.path_wishes import PathWishes
-from hnr_planner.server.request_log import shortened
-from hnr_planner.server.requests import PlanRequest, Pose
-from hnr_planner.server.respond import ToFrame
-from hnr_planner.server.responses import PlanResponse
-from hnr_planner.server.settings import Settings
-from hnr_planner.server.waiting import NewestMap
+from hnr_planner.server.parameters.settings import Settings
+from hnr_planner.server.planning.respond import ToFrame
+from hnr_planner.server.requests.outcomes import Refusal
+from hnr_planner.server.requests.plan_request import PlanRequest, Pose
+from hnr_planner.server.responses.plan_response import PlanResponse
+from hnr_planner.server.responses.request_log import shortened
+from hnr_planner.server.validity.path_validity import judge_path
+from hnr_planner.server.validity.path_wishes import PathWishes
 from rclpy.action import ActionServer, CancelResponse
 from rclpy.action.server import ServerGoalHandle
 from rclpy.callback_groups import ReentrantCallbackGroup

@@ -10,8 +10,10 @@ from hnr_planner.ros.messages.markers import serialised_markers
 from hnr_planner.ros.messages.paths import serialised_path
 from hnr_planner.ros.messages.samples import serialised_draws, serialised_samples
 from hnr_planner.ros.messages.trajectories import serialised_trajectory
-from hnr_planner.server.request_log import LogEntry
-from hnr_planner.server.responses import PlanResponse, Response, SampleResponse
+from hnr_planner.server.responses.plan_response import PlanResponse
+from hnr_planner.server.responses.request_log import LogEntry
+from hnr_planner.server.responses.response import Response
+from hnr_planner.server.responses.sample_response import SampleResponse
 from nav_msgs.msg import Path
 from sensor_msgs.msg import PointCloud2
 from std_msgs.msg import Header

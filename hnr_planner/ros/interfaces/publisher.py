@@ -13,9 +13,10 @@ from diagnostic_msgs.msg import DiagnosticArray
 from hnr_planner.ros.interfaces.pictures import PicturePublisher
 from hnr_planner.ros.interfaces.publications import Publication, TOPICS
 from hnr_planner.ros.messages.outcomes import outcome_message
-from hnr_planner.server.request_log import LogEntry
-from hnr_planner.server.responses import PlanResponse, Response
-from hnr_planner.server.settings import MOST_ALTERNATIVES
+from hnr_planner.server.parameters.settings import MOST_ALTERNATIVES
+from hnr_planner.server.responses.plan_response import PlanResponse
+from hnr_planner.server.responses.request_log import LogEntry
+from hnr_planner.server.responses.response import Response
 from rclpy.clock import Clock
 from rclpy.duration import Duration
 from rclpy.event_handler import PublisherEventCallbacks

@@ -7,14 +7,15 @@ from typing import NamedTuple
 from builtin_interfaces.msg import Time
 from hnr_planner.ros.interfaces.publications import PlanPublication, SamplePublication
 from hnr_planner.ros.interfaces.publisher import latched, NO_EVENTS, Publisher
-from hnr_planner.server.path_monitor import PathMonitor
+from hnr_planner.server.map.waiting import NewestMap
+from hnr_planner.server.parameters.settings import Settings
+from hnr_planner.server.planning.respond import ToFrame
 from hnr_planner.server.planning_server import PlanningServer
-from hnr_planner.server.request_log import RequestLog
-from hnr_planner.server.requests import PlanRequest
-from hnr_planner.server.respond import ToFrame
-from hnr_planner.server.responses import PlanResponse, SampleResponse
-from hnr_planner.server.settings import Settings
-from hnr_planner.server.waiting import NewestMap
+from hnr_planner.server.requests.plan_request import PlanRequest
+from hnr_planner.server.responses.plan_response import PlanResponse
+from hnr_planner.server.responses.request_log import RequestLog
+from hnr_planner.server.responses.sample_response import SampleResponse
+from hnr_planner.server.validity.path_monitor import PathMonitor
 from rclpy.node import Node
 from std_msgs.msg import Bool, Header
 

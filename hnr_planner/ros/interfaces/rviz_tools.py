@@ -5,8 +5,8 @@ from collections.abc import Callable
 from geometry_msgs.msg import PoseStamped, PoseWithCovarianceStamped
 from hnr_planner.ros.interfaces.request_server import RequestServer
 from hnr_planner.ros.messages.paths import pose_from_message
-from hnr_planner.server.requests import NOWHERE, PlanRequest
-from hnr_planner.server.settings import Settings
+from hnr_planner.server.parameters.settings import Settings
+from hnr_planner.server.requests.plan_request import NOWHERE, PlanRequest
 from rclpy.callback_groups import CallbackGroup
 from rclpy.node import Node
 from rclpy.subscription import Subscription

@@ -8,10 +8,10 @@ from hnr_planner.ros.map.keepout import KeepoutMasks
 from hnr_planner.ros.map.subscription import MapSubscription
 from hnr_planner.ros.map.updates import MapUpdates
 from hnr_planner.ros.messages.maps import map_from_message, map_with_update
-from hnr_planner.server.map_advice import MapAdvice
-from hnr_planner.server.map_store import MapSnapshot, MapStore
-from hnr_planner.server.received_maps import MapError
-from hnr_planner.server.settings import Settings
+from hnr_planner.server.map.map_advice import MapAdvice
+from hnr_planner.server.map.map_store import MapSnapshot, MapStore
+from hnr_planner.server.map.received_maps import MapError
+from hnr_planner.server.parameters.settings import Settings
 from nav_msgs.msg import OccupancyGrid
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
 from rclpy.node import Node

@@ -6,8 +6,8 @@ from typing import Any
 from builtin_interfaces.msg import Time
 from geometry_msgs.msg import Point, Pose, Quaternion
 from hnr_planner.maps import OccupancyMap
-from hnr_planner.server.orientations import quaternion_of
-from hnr_planner.server.received_maps import received_map, updated_map
+from hnr_planner.server.geometry.orientations import quaternion_of
+from hnr_planner.server.map.received_maps import received_map, updated_map
 from nav_msgs.msg import MapMetaData, OccupancyGrid
 import numpy as np
 from std_msgs.msg import Header

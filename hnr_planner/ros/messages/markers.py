@@ -2,8 +2,8 @@
 
 from geometry_msgs.msg import Pose, Vector3
 from hnr_planner.ros.messages.cdr import ONE_POINT, with_points
-from hnr_planner.server.responses import PlanResponse
-from hnr_planner.server.shapes import Kind, search_shapes, Shape
+from hnr_planner.server.responses.plan_response import PlanResponse
+from hnr_planner.server.responses.shapes import Kind, search_shapes, Shape
 from rclpy.serialization import serialize_message
 from std_msgs.msg import ColorRGBA, Header
 from visualization_msgs.msg import Marker, MarkerArray

@@ -4,8 +4,8 @@ from collections.abc import Mapping
 
 from builtin_interfaces.msg import Time
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
-from hnr_planner.server.outcomes import Outcome
-from hnr_planner.server.responses import Response
+from hnr_planner.server.requests.outcomes import Outcome
+from hnr_planner.server.responses.response import Response
 from std_msgs.msg import Header
 
 

@@ -5,9 +5,9 @@ import struct
 
 from geometry_msgs.msg import PoseStamped
 from hnr_planner.ros.messages.cdr import with_elements
-from hnr_planner.server.pose_motions import poses_of
-from hnr_planner.server.received_maps import as_written
-from hnr_planner.server.requests import PlanRequest, Pose
+from hnr_planner.server.geometry.pose_motions import poses_of
+from hnr_planner.server.map.received_maps import as_written
+from hnr_planner.server.requests.plan_request import PlanRequest, Pose
 from nav_msgs.msg import Path
 from nav_msgs.srv import GetPlan
 import numpy as np

@@ -5,8 +5,8 @@ import struct
 from typing import NamedTuple
 
 from hnr_planner.core.planning.result import SearchResult
-from hnr_planner.server.responses import SampleResponse
-from hnr_planner.server.subsample import subsample_tree
+from hnr_planner.server.responses.sample_response import SampleResponse
+from hnr_planner.server.responses.subsample import subsample_tree
 import numpy as np
 from numpy.typing import NDArray
 from rclpy.serialization import serialize_message

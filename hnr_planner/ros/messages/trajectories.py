@@ -6,7 +6,7 @@ from builtin_interfaces.msg import Duration
 from geometry_msgs.msg import Quaternion, Transform, Twist, Vector3
 from hnr_planner.core.systems import Trajectory
 from hnr_planner.ros.messages.cdr import with_elements
-from hnr_planner.server.trajectories import yaws_along
+from hnr_planner.server.geometry.trajectories import yaws_along
 import numpy as np
 from numpy.typing import NDArray
 from rclpy.serialization import serialize_message

@@ -5,8 +5,8 @@ import textwrap
 
 from hnr_planner.core.planning.registry import PLANNERS
 from hnr_planner.core.trajectories.registry import KINODYNAMIC_ENTRIES
-from hnr_planner.server.rules import Rule
-from hnr_planner.server.settings import DEFAULTS, RULES
+from hnr_planner.server.parameters.rules import Rule
+from hnr_planner.server.parameters.settings import DEFAULTS, RULES
 
 #: Most characters of a line of the text.
 WIDTH = 99

@@ -2,7 +2,7 @@
 
 import logging
 
-from hnr_planner.server.request_log import shortened
+from hnr_planner.server.responses.request_log import shortened
 from rclpy.impl.rcutils_logger import RcutilsLogger
 
 #: Name of the Python logger that the whole package logs to.

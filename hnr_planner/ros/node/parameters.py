@@ -5,8 +5,8 @@ import dataclasses
 import difflib
 from typing import Any
 
-from hnr_planner.server.rules import Rule, SettingsError
-from hnr_planner.server.settings import DEFAULTS, RULES, Settings
+from hnr_planner.server.parameters.rules import Rule, SettingsError
+from hnr_planner.server.parameters.settings import DEFAULTS, RULES, Settings
 from rcl_interfaces.msg import (
     FloatingPointRange,
     IntegerRange,

@@ -17,11 +17,11 @@ from hnr_planner.ros.node.managed_node import ManagedNode
 from hnr_planner.ros.node.parameters import Parameters, warn_of_unknown_parameters
 from hnr_planner.ros.node.transforms import Transforms
 from hnr_planner.ros.node.watch_process import WatchProcess
-from hnr_planner.server.map_store import MapSnapshot
-from hnr_planner.server.outcomes import Outcome, Refusal
-from hnr_planner.server.requests import Pose
-from hnr_planner.server.respond import only_same_frame
-from hnr_planner.server.settings import Settings
+from hnr_planner.server.map.map_store import MapSnapshot
+from hnr_planner.server.parameters.settings import Settings
+from hnr_planner.server.planning.respond import only_same_frame
+from hnr_planner.server.requests.outcomes import Outcome, Refusal
+from hnr_planner.server.requests.plan_request import Pose
 from nav_msgs.srv import GetPlan
 from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.qos import QoSProfile

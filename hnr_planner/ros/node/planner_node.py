@@ -12,7 +12,7 @@ from hnr_planner.ros.node.help import help_text
 from hnr_planner.ros.node.package_log import forward_package_log
 from hnr_planner.ros.node.planner import PlannerNode, SERVICES, THREADS
 from hnr_planner.ros.node.process import run
-from hnr_planner.server.request_log import shortened
+from hnr_planner.server.responses.request_log import shortened
 from rclpy.impl.rcutils_logger import RcutilsLogger
 
 #: How long [s] a thread of Python runs while others wait. Searches that run interpreted take all

@@ -2,10 +2,10 @@
 
 from dataclasses import replace
 
-from hnr_planner.server.orientations import LEVEL, normalised, product, rotated
-from hnr_planner.server.outcomes import Outcome, Refusal
-from hnr_planner.server.requests import Pose
-from hnr_planner.server.respond import only_same_frame
+from hnr_planner.server.geometry.orientations import LEVEL, normalised, product, rotated
+from hnr_planner.server.planning.respond import only_same_frame
+from hnr_planner.server.requests.outcomes import Outcome, Refusal
+from hnr_planner.server.requests.plan_request import Pose
 from rclpy.duration import Duration
 from rclpy.node import Node
 from rclpy.time import Time

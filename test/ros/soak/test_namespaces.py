@@ -18,7 +18,7 @@ from test.ros.soak.judge import SOLVED, World
 from test.ros.soak.worlds import END, LONG, plan_request, requests, rooms, START
 from typing import NamedTuple
 
-from hnr_planner.server.outcomes import Outcome
+from hnr_planner.server.requests.outcomes import Outcome
 from nav_msgs.msg import OccupancyGrid
 import numpy as np
 import pytest
