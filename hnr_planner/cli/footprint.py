@@ -58,7 +58,7 @@ def add_footprint_arguments(
 
 
 def add_planning_arguments(group: argparse._ArgumentGroup) -> None:
-    """Add what decides between paths of a robot with a footprint to the group of its arguments."""
+    """Add the options that decide between paths of a robot with a footprint to its group."""
     group.add_argument(
         '--reverse-penalty',
         type=positive,

@@ -7,6 +7,7 @@ functions that turn the results into a figure and tables. ``conduct`` runs the c
 files. ``docs/`` has the results.
 """
 
-from hnr_planner.experiments.registry import ExperimentEntry, EXPERIMENTS, load, NAMES
+from hnr_planner.experiments.entry import ExperimentEntry
+from hnr_planner.experiments.registry import EXPERIMENTS, load, NAMES
 
 __all__ = ['EXPERIMENTS', 'NAMES', 'ExperimentEntry', 'load']

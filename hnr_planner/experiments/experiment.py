@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from hnr_planner.experiments.registry import ExperimentEntry
+from hnr_planner.experiments.entry import ExperimentEntry
 from hnr_planner.experiments.results import Results
 from matplotlib.figure import Figure
 

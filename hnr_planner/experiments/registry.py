@@ -9,30 +9,12 @@ module of one experiment. A new experiment is a module, or package, of
 from __future__ import annotations
 
 from importlib import import_module
-from typing import NamedTuple, TYPE_CHECKING
+from typing import TYPE_CHECKING
+
+from hnr_planner.experiments.entry import ExperimentEntry
 
 if TYPE_CHECKING:
     from hnr_planner.experiments.experiment import Experiment
-
-
-class ExperimentEntry(NamedTuple):
-    """
-    An experiment in the table.
-
-    Attributes
-    ----------
-    name : str
-        Name of the experiment on the command line, and of its page and files.
-    module : str
-        Full name of the module that defines ``EXPERIMENT``.
-    summary : str
-        What the experiment measures, in one line.
-
-    """
-
-    name: str
-    module: str
-    summary: str
 
 
 _PACKAGE = 'hnr_planner.experiments'

@@ -165,8 +165,8 @@ def _split(
     """
     Cut an interval [m] into rooms with inner walls between them; return their (start, end).
 
-    Widths are from ``least`` to ``most``, but the last room may be up to two of width ``least``
-    and a wall wide.
+    Widths are from ``least`` to ``most``; only a rest that is too short for two rooms of width
+    ``least`` and a wall may be wider.
     """
     pieces = []
     while stop - start > max(most, 2 * least + INNER_WALL):

@@ -1,4 +1,8 @@
-"""What all viewers of a page are to see, and what each of them has not got yet."""
+"""
+The messages that all viewers of the page are to see, and those that each has not got yet.
+
+Messages of one kind share a slot: a newer message takes the place of the one before it.
+"""
 
 from __future__ import annotations
 
@@ -11,7 +15,7 @@ MOST_VIEWERS = 32
 
 class Viewer:
     """
-    What one page has not got yet: of each slot of the hub, the last message only.
+    The messages that wait for one page: of each slot of the hub the newest.
 
     So a page that reads slowly misses messages, and holds nobody up.
     """

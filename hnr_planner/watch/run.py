@@ -106,7 +106,7 @@ async def _serve(served: Served) -> None:
 def _watch(
     node: WatchNode, wanted: bool, forget: Callable[[], None], loop: asyncio.AbstractEventLoop
 ) -> None:
-    """Begin or end to listen; at the end, ``forget`` in the event loop all that was heard."""
+    """Subscribe the node; or unsubscribe it, and ``forget`` its messages in the event loop."""
     node.watch(wanted)
     if not wanted:
         loop.call_soon_threadsafe(forget)
@@ -142,7 +142,7 @@ def _call_at_end(process: int, end: Callable[[], None]) -> None:
 
 
 def _planning(ros: _Ros, loop: asyncio.AbstractEventLoop) -> Planning:
-    """Return what plans in the thread of ROS, and calls back in that of the event loop."""
+    """Return a function that plans in the thread of ROS and calls back in the event loop."""
 
     def plan(start: Point, goal: Point, end: Callable[[str], None]) -> None:
         def end_in_loop(why: str) -> None:

@@ -118,7 +118,7 @@ class _Page(_Guarded):
         self.token, self._html, self._policy = token, page, policy
 
     def get(self) -> None:
-        """Send the page; a token in the address is put into a cookie first."""
+        """Send the page, or move a token from the address into a cookie and ask to load again."""
         if self.token is not None and self.get_query_argument('token', None) is not None:
             self.set_cookie(self.cookie, self.token, httponly=True, samesite='Lax')
             self.redirect('/')

@@ -6,9 +6,9 @@ from pathlib import Path
 from typing import NamedTuple
 
 from hnr_planner.experiments.conduct import conduct
+from hnr_planner.experiments.entry import ExperimentEntry
 from hnr_planner.experiments.experiment import Experiment
 from hnr_planner.experiments.figures import new_figure
-from hnr_planner.experiments.registry import ExperimentEntry
 from hnr_planner.experiments.results import Mean, Results, ResultsError, ResultsFile
 from matplotlib.figure import Figure
 import numpy as np

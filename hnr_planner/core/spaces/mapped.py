@@ -277,7 +277,7 @@ def _component(mapped, x):
 @work_size.register(MappedData)
 @inlined
 def _work_size(mapped, dim):
-    """Return the number of floats for a point and its preimage."""
+    """Return the length of the work array: for a point, and for its preimage."""
     return 2 * dim
 
 

@@ -202,7 +202,7 @@ def _is_free_up_to(oracle, x, u, end):
 @work_size.register(OracleData)
 @inlined
 def _work_size(oracle, dim):
-    """Return the number of floats for a point and the result."""
+    """Return the length of the work array: for a point, and for the result of the function."""
     return dim + 1
 
 

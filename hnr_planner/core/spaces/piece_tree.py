@@ -154,12 +154,9 @@ def _leaf_at(tree, node, x, u, s):
             if y < tree.lower[node, i] or y > tree.upper[node, i]:
                 is_in = False
                 break
-        if not is_in:
-            node = tree.after[node]
-        elif tree.piece[node] != NONE:
+        if is_in and tree.piece[node] != NONE:
             return node
-        else:
-            node += 1
+        node = node + 1 if is_in else tree.after[node]
     return node
 
 
@@ -184,12 +181,9 @@ def _leaf_on(tree, node, x, inverse, first, last):
                 is_met = near <= far or near - far <= ROUNDING * (abs(near) + abs(far))
             if not is_met:
                 break
-        if not is_met:
-            node = tree.after[node]
-        elif tree.piece[node] != NONE:
+        if is_met and tree.piece[node] != NONE:
             return node
-        else:
-            node += 1
+        node = node + 1 if is_met else tree.after[node]
     return node
 
 

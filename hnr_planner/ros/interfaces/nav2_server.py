@@ -22,8 +22,8 @@ from hnr_planner.server.requests.outcomes import Refusal
 from hnr_planner.server.requests.plan_request import PlanRequest, Pose
 from hnr_planner.server.responses.plan_response import PlanResponse
 from hnr_planner.server.responses.request_log import shortened
+from hnr_planner.server.validity.check_options import CheckOptions
 from hnr_planner.server.validity.path_validity import judge_path
-from hnr_planner.server.validity.path_wishes import PathWishes
 from rclpy.action import ActionServer, CancelResponse
 from rclpy.action.server import ServerGoalHandle
 from rclpy.callback_groups import ReentrantCallbackGroup
@@ -96,9 +96,9 @@ class Nav2Server:
         not have. Why a path is not valid is logged as a warning.
         """
         response.is_valid = False
-        wishes = PathWishes.of(request)
+        options = CheckOptions.of(request)
         try:
-            wishes.check(self._settings())
+            options.check(self._settings())
             snapshot = self._newest_map()
             _ = snapshot.pose_space  # refused where the robot does not fit into the map
         except Refusal as refusal:
@@ -106,9 +106,9 @@ class Nav2Server:
         else:
             poses, frame = poses_from_path(request.path), request.path.header.frame_id
             robot = self._find_robot(snapshot.frame)
-            verdict = judge_path(poses, frame, snapshot, robot, wishes.lookahead)
+            verdict = judge_path(poses, frame, snapshot, robot, options.lookahead)
             response.is_valid = not verdict.why
-            response.invalid_pose_indices = verdict.blocked[: wishes.most_indices]
+            response.invalid_pose_indices = verdict.blocked[: options.most_indices]
             if hasattr(response, 'success'):
                 response.success = True
             why = verdict.why

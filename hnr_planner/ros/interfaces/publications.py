@@ -89,7 +89,7 @@ class PlanPublication(Publication):
         return serialised_path(self.response.poses, self.header)
 
     def messages(self) -> Messages:
-        """Yield path, alternatives and trajectory; each is empty where there is none."""
+        """Yield the messages of path, alternatives and trajectory, empty where there is none."""
         yield 'path', self.path
         yield 'paths', self.path
         for poses in self.response.other_poses:

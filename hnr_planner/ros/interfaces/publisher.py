@@ -174,9 +174,10 @@ class Publisher:
 
 class _Wake(enum.Enum):
     """
-    Why the publishing thread is woken.
+    Reasons to wake the publishing thread.
 
-    RESPONSE: a response was sent. SUBSCRIBER: a picture may have one more. END: the node ends.
+    RESPONSE: a response was sent. SUBSCRIBER: a topic of a picture may have a new subscriber. END:
+    the node ends.
     """
 
     RESPONSE = enum.auto()

@@ -41,7 +41,7 @@ class PlanResponses:
         return response
 
     def _check(self) -> None:
-        """Raise ValueError when a small response from bytes differs from the ordinary one."""
+        """Raise ValueError unless a small response from bytes equals the one made pose by pose."""
         poses, header = np.arange(21.0).reshape(3, 7), Header(frame_id='map')
         ordinary = GetPlan.Response(plan=path_message(poses, header))
         made = self.make(poses, header, serialised_path(poses, header))

@@ -41,9 +41,9 @@ class ManagedNode(LifecycleNode):
 
     def end_transitions(self) -> None:
         """
-        End the service ``change_state``, so that nobody asks it for what has no response any more.
+        End the service ``change_state``, so that no request comes after the last response.
 
-        To be called while the node still spins: it answers what has come before.
+        To be called while the node still spins, so that earlier requests get their responses.
         """
         self.destroy_service(self._change_state)
 

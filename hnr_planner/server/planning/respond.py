@@ -109,7 +109,7 @@ def respond(
         job = _Job(settings, newest_map, to_frame, limits, times, legs)
         response = job.plan_for_newest_map(request, snapshot)
     except Refusal as refusal:
-        why = refusal.why + (remark_since(before) if limits.hold() else '')
+        why = refusal.why + (remark_since(before) if limits.must_end() else '')
         response = PlanResponse(refusal.outcome, why, request, snapshot=snapshot)
     elapsed = time.monotonic() - arrived
     return replace(response, elapsed=elapsed, times=times, tier=tier_since(before))

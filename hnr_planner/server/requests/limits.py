@@ -53,7 +53,7 @@ class RequestLimits:
         """Whether ``working_time()`` has reached the deadline."""
         return working_time() >= self.deadline
 
-    def hold(self) -> bool:
+    def must_end(self) -> bool:
         """Return whether the request has to end: it was cancelled, or its time is up."""
         return self.cancel.is_set() or self.time_is_up
 
@@ -76,7 +76,7 @@ class RequestLimits:
         An interruption raises Refusal (CANCELLED, TIMEOUT). Compiled kernels are not interrupted.
         """
         try:
-            with interruptible(self.hold):
+            with interruptible(self.must_end):
                 yield
         except Interrupted:
             self.check()
@@ -100,7 +100,7 @@ class RequestLimits:
         """
         first = working_time() + least
         try:
-            with interruptible(lambda: working_time() >= first and self.hold()):
+            with interruptible(lambda: working_time() >= first and self.must_end()):
                 return work()
         except Interrupted:
             return otherwise

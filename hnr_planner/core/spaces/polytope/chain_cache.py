@@ -272,7 +272,7 @@ def _move_along_dense_axis(layout, axis, slacks, s, doubt):
     """
     Update every distance for a move by ``s`` along an axis.
 
-    Return how many of them become ``doubt`` or less.
+    Return how many become ``doubt`` or less: too short to decide by their sign, after rounding.
     """
     n_doubtful = 0
     for i in range(len(slacks)):

@@ -72,10 +72,11 @@ class Plane(NamedTuple):
 
     def reduced(self, normals: Any, offsets: Floats) -> tuple[Any, Floats, Floats]:
         """
-        Return inequalities for the free coordinates, and the sizes of the terms of each row.
+        Return inequalities for the free coordinates, and the size of the largest term of each row.
 
-        ``normals`` (m, dim) is sparse. Coefficients that are rounding errors of the terms they are
-        computed from are zero in the result, which is sparse too.
+        Bound coordinates are replaced by the sums that the equations give for them. ``normals``
+        (m, dim) is sparse. Coefficients that are rounding errors of the terms they are computed
+        from are zero in the result, which is sparse too.
         """
         from scipy import sparse
 

@@ -1,4 +1,4 @@
-"""What a request of Nav2 to judge a path wants besides, where its messages have such fields."""
+"""Options of Nav2's requests to check a path, where its messages have such fields."""
 
 import math
 from typing import Any, NamedTuple, Self
@@ -10,18 +10,18 @@ from hnr_planner.server.requests.outcomes import Outcome, Refusal
 INSCRIBED_COST = 253
 
 
-class PathWishes(NamedTuple):
+class CheckOptions(NamedTuple):
     """
-    What a request to judge a path wants besides the path.
+    Options of a request to check whether a path is valid.
 
     Attributes
     ----------
     lookahead : float
-        Length of the path [m] to judge, from the robot on; inf for all of it.
+        Length of the path [m] to check, from the robot on; inf for all of it.
     most_indices : int, optional
         Most indices of blocked poses to return; None for all.
     layer, footprint : str
-        A layer of a costmap and a polygon to judge with; empty for none.
+        A layer of a costmap and a polygon to check with; empty for none.
     max_cost : int
         Highest cost that is no obstacle.
     unknown_blocks : bool
@@ -38,7 +38,7 @@ class PathWishes(NamedTuple):
 
     @classmethod
     def of(cls, request: Any) -> Self:
-        """Return the wishes of a message; a field that it does not have is no wish."""
+        """Return the options in a message; those that it has no field for have their defaults."""
         distance = float(getattr(request, 'max_lookahead_distance', -1.0))
         return cls(
             lookahead=distance if distance >= 0.0 else math.inf,
@@ -50,7 +50,7 @@ class PathWishes(NamedTuple):
         )
 
     def check(self, settings: Settings) -> None:
-        """Raise Refusal (BAD_REQUEST) for a wish that a node with ``settings`` cannot fulfil."""
+        """Raise Refusal (BAD_REQUEST) for an option that no node with ``settings`` has."""
         why = ''
         if self.layer:
             why = f'layer_name must be empty, as there are no layers here, got {self.layer!r}'

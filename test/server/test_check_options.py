@@ -1,17 +1,17 @@
-"""What a request to judge a path wants is fulfilled or refused, never ignored."""
+"""Options of a request to check a path are fulfilled or refused, never ignored."""
 
 from types import SimpleNamespace
 
 from hnr_planner.server.parameters.settings import Settings
 from hnr_planner.server.requests.outcomes import Outcome, Refusal
-from hnr_planner.server.validity.path_wishes import PathWishes
+from hnr_planner.server.validity.check_options import CheckOptions
 import pytest
 
 
-def test_request_without_further_fields_wishes_nothing() -> None:
-    wishes = PathWishes.of(SimpleNamespace(path=None))
-    assert wishes == PathWishes()
-    wishes.check(Settings(unknown='free'))
+def test_request_without_further_fields_has_the_defaults() -> None:
+    options = CheckOptions.of(SimpleNamespace(path=None))
+    assert options == CheckOptions()
+    options.check(Settings(unknown='free'))
 
 
 @pytest.mark.parametrize(
@@ -24,12 +24,12 @@ def test_request_without_further_fields_wishes_nothing() -> None:
     ],
 )
 def test_what_the_node_does_not_have_is_refused(field: str, value: object) -> None:
-    wishes = PathWishes.of(SimpleNamespace(**{field: value}))
+    options = CheckOptions.of(SimpleNamespace(**{field: value}))
     with pytest.raises(Refusal, match=f'{field} must be') as refusal:
-        wishes.check(Settings(unknown='free'))
+        options.check(Settings(unknown='free'))
     assert refusal.value.outcome is Outcome.BAD_REQUEST
     assert str(value).lower() in str(refusal.value).lower()
 
 
 def test_unknown_cells_block_by_the_parameters_anyway() -> None:
-    PathWishes(unknown_blocks=True).check(Settings())
+    CheckOptions(unknown_blocks=True).check(Settings())
