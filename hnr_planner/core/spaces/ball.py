@@ -1,5 +1,6 @@
 """An open ball as a space, in any dimension."""
 
+from functools import cached_property
 import math
 from typing import NamedTuple
 
@@ -90,7 +91,7 @@ class BallSpace(Space):
         """Lower and upper corner (dim,), caller's frame."""
         return self.centre - self.radius, self.centre + self.radius
 
-    @property
+    @cached_property
     def typical_clearance(self) -> float:
         """Mean distance from a point of the ball to the sphere, exact."""
         return self.radius / (self.dim + 1)

@@ -102,7 +102,7 @@ class DifferenceSpace(Space):
         """Lower and upper corner (dim,) of the base."""
         return self.base.bounds
 
-    @property
+    @cached_property
     def typical_clearance(self) -> float:
         """
         Estimate of the mean clearance, in the caller's units.

@@ -1,6 +1,7 @@
 """The image of a space under a map of the user that keeps volume."""
 
 from collections.abc import Callable
+from functools import cached_property
 import math
 from typing import Any, NamedTuple
 
@@ -167,7 +168,7 @@ class MappedSpace(Space):
         """Lower and upper corner (dim,) of a box around the image, caller's frame."""
         return self._lower.copy(), self._upper.copy()
 
-    @property
+    @cached_property
     def typical_clearance(self) -> float:
         """Typical clearance of the base."""
         return self.base.typical_clearance * self.base.scale

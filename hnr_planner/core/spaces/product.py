@@ -104,7 +104,7 @@ class ProductSpace(Space):
         lower, upper = zip(*(factor.bounds for factor in self.factors), strict=True)
         return np.concatenate(lower), np.concatenate(upper)
 
-    @property
+    @cached_property
     def typical_clearance(self) -> float:
         """Typical clearance of the narrowest factor, in the caller's units."""
         return min(factor.typical_clearance * factor.scale for factor in self.factors)

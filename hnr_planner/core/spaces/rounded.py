@@ -1,6 +1,7 @@
 """A space whose walks run in other coordinates, in which it is about as long in all directions."""
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 from hnr_planner.core.checks import Floats
@@ -90,7 +91,7 @@ class RoundedSpace(Space):
         """Lower and upper corner (dim,), caller's frame."""
         return self.base.bounds
 
-    @property
+    @cached_property
     def kernel_bounds(self) -> tuple[Floats, Floats]:
         """Lower and upper corner (kernel_dim,) of a box around the free points, kernel frame."""
         lower, upper = self.base.kernel_bounds
@@ -108,7 +109,7 @@ class RoundedSpace(Space):
         """Length up to which a chord counts as zero: ``MARGIN`` in coordinates of about 1."""
         return MARGIN
 
-    @property
+    @cached_property
     def typical_clearance(self) -> float:
         """Mean distance from a point of the ball of radius 1 to its boundary."""
         return 1.0 / (self.kernel_dim + 1)

@@ -4,6 +4,7 @@ The image of a ball or a box under a shear, which need not be convex.
 This module has the whole kind of space, the class that validates and the kernels.
 """
 
+from functools import cached_property
 import math
 from typing import NamedTuple
 
@@ -143,7 +144,7 @@ class ShearedSpace(Space):
         """Lower and upper corner (dim,), caller's frame."""
         return self._lower.copy(), self._upper.copy()
 
-    @property
+    @cached_property
     def typical_clearance(self) -> float:
         """Typical clearance of the base over ``shrink``."""
         return self.base.typical_clearance / self.shrink

@@ -33,8 +33,7 @@ from numpy.typing import ArrayLike, NDArray
 
 #: Distance before a chord's end at which a motion stops, as a fraction of the bounds' diagonal.
 MARGIN = 1e-9
-#: Least distance before a chord's end, in roundings of the largest coordinate, for a space far
-#: from the origin.
+#: Least distance before a chord's end, in roundings of the caller's coordinates.
 MARGIN_ROUNDINGS = 8.0
 #: Number of steps along the diagonal in which a line is searched for its entry into a Python
 #: space.
@@ -180,7 +179,7 @@ class Space(ABC):
         """Caller's units [m] in one unit of the kernel frame."""
         return 1.0
 
-    @property
+    @cached_property
     def kernel_bounds(self) -> tuple[Floats, Floats]:
         """Lower and upper corner (dim,) of a box around the free points, kernel frame."""
         if self._kernel_origin is None:
@@ -188,26 +187,36 @@ class Space(ABC):
         lower, upper = self.bounds
         return lower - self._kernel_origin, upper - self._kernel_origin
 
-    @property
+    @cached_property
     def margin(self) -> float:
         """
         Distance before a chord's end at which a motion stops, kernel frame.
 
-        A fraction ``MARGIN`` of the bounds' diagonal; in a space far from the origin at least
-        ``MARGIN_ROUNDINGS`` roundings of the largest coordinate of the bounds.
+        A fraction ``MARGIN`` of the bounds' diagonal, and at least ``MARGIN_ROUNDINGS`` times
+        the rounding of the caller's coordinates.
         """
         lower, upper = self.kernel_bounds
-        margin = MARGIN * float(np.linalg.norm(upper - lower))
+        fraction = MARGIN * float(np.linalg.norm(upper - lower))
+        return max(fraction, MARGIN_ROUNDINGS * self._rounding)
+
+    @property
+    def _rounding(self) -> float:
+        """
+        Rounding of the caller's coordinates, kernel frame, where it matters beside the margin.
+
+        It is 0 in a space near the origin, where a fraction of the diagonal is far above it, and
+        else the spacing of floats at the largest coordinate of the bounds.
+        """
         if self._kernel_origin is None:
-            return margin
-        return max(margin, MARGIN_ROUNDINGS * float(np.spacing(np.abs(self.bounds).max())))
+            return 0.0
+        return float(np.spacing(np.abs(self.bounds).max()))
 
     @property
     def zero_length(self) -> float:
         """Length up to which a chord counts as zero in the statistics of walks, kernel frame."""
         return self.margin
 
-    @property
+    @cached_property
     def typical_clearance(self) -> float:
         """
         Rough mean distance from a free point to the boundary, kernel frame.

@@ -91,7 +91,7 @@ class UnionSpace(Space):
         lower, upper = zip(*(member.bounds for member in self.members), strict=True)
         return np.min(lower, axis=0), np.max(upper, axis=0)
 
-    @property
+    @cached_property
     def typical_clearance(self) -> float:
         """Mean of the members' typical clearances, in the caller's units."""
         return float(np.mean([member.typical_clearance * member.scale for member in self.members]))

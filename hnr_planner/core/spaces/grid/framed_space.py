@@ -61,10 +61,10 @@ class FramedSpace(Space):
         """Lower and upper corner (2,) of the grid in the kernel frame [cells]."""
         return self.frame.corners[0], self.frame.corners[2]
 
-    @cached_property
-    def margin(self) -> float:
-        """Distance [cells] before a chord's end at which a motion stops, at least 8 roundings."""
-        return max(super().margin, 8.0 * self.frame.rounding)
+    @property
+    def _rounding(self) -> float:
+        """Rounding [cells] of the coordinates of points in the map frame."""
+        return self.frame.rounding
 
     def compiled_at(self, origin: Floats | None) -> TransformedData:
         """

@@ -1,5 +1,6 @@
 """One or more polygons, which may have holes, as a space of the plane."""
 
+from functools import cached_property
 import math
 from typing import Any, TYPE_CHECKING
 
@@ -80,11 +81,11 @@ class PolygonSpace(Space):
         return corners[:2], corners[2:]
 
     @property
-    def margin(self) -> float:
-        """Distance before a chord's end at which a motion stops, above the rounding of edges."""
-        return max(super().margin, 8.0 * self.data.rounding)
+    def _rounding(self) -> float:
+        """Rounding of the coordinates of points and edges, kernel frame."""
+        return max(super()._rounding, self.data.rounding)
 
-    @property
+    @cached_property
     def typical_clearance(self) -> float:
         """Mean distance to the wall in a corridor of the same area and boundary length."""
         return float(self.polygon.area / self.polygon.length / 2.0)

@@ -178,7 +178,7 @@ class PolytopeSpace(Space):
         """Length up to which a chord counts as zero: a fraction ``MARGIN`` of the inner radius."""
         return MARGIN * self.inner_radius
 
-    @property
+    @cached_property
     def typical_clearance(self) -> float:
         """Mean distance from a point of the largest inner ball to the sphere around that ball."""
         return self.inner_radius / (self.kernel_dim + 1)

@@ -117,7 +117,7 @@ class PoseSpace(Space):
         lower, upper = self.grid.bounds
         return np.append(lower, -math.pi), np.append(upper, math.pi)
 
-    @property
+    @cached_property
     def kernel_bounds(self) -> tuple[Floats, Floats]:
         """Lower and upper corner (3,) of the poses, kernel frame: [cells, cells, rad]."""
         lower, upper = self.grid.kernel_bounds
@@ -133,7 +133,7 @@ class PoseSpace(Space):
         """Distance [cells] before a chord's end at which a motion stops."""
         return self.grid.margin
 
-    @property
+    @cached_property
     def typical_clearance(self) -> float:
         """Mean Chebyshev distance [cells] from a free cell to the nearest blocked cell."""
         return self.grid.typical_clearance
