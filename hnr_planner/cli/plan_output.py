@@ -1,4 +1,4 @@
-"""What the command ``plan`` prints and draws: the result as JSON, as text, and as a picture."""
+"""Output of the command ``plan``: the result as JSON, as text, and as a picture."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Who may open the page: the address that is served, the token, and the name that is asked for."""
+"""Access to the page: the address that is served, the token, and the name in a request."""
 
 from __future__ import annotations
 

@@ -40,7 +40,7 @@ class Profile(NamedTuple):
 
     @property
     def changes(self) -> tuple[float, float]:
-        """Where [m] the speed stops to rise, and where it begins to fall."""
+        """Lengths [m] along the way at which the speed stops rising, and begins to fall."""
         twice = 2.0 * self.acceleration
         risen = (self.top**2 - self.begin**2) / twice
         return risen, max(self.length - self.top**2 / twice, risen)

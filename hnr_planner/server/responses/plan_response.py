@@ -142,7 +142,7 @@ class PlanResponse(Response):
 
     @property
     def values(self) -> dict[str, str]:
-        """What is published about the request, as text by name; seconds, metres, NaN unknown."""
+        """Published values of the request as text, by name; in seconds and metres, NaN unknown."""
         values = super().values | {
             'clearance': f'{self.clearance:.6g}',
             'offset': f'{self.offset:.6g}',

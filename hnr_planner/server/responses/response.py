@@ -61,7 +61,7 @@ class Response(ABC):
 
     @property
     def values(self) -> dict[str, str]:
-        """What is published about the request, as text by name; seconds, metres, NaN unknown."""
+        """Published values of the request as text, by name; in seconds and metres, NaN unknown."""
         return {
             'why': self.why,
             'algorithm': self.algorithm,

@@ -55,7 +55,7 @@ class SampleResponse(Response):
 
     @property
     def values(self) -> dict[str, str]:
-        """What is published about the request, as text by name; times in seconds."""
+        """Published values of the request as text, by name; times in seconds."""
         values = super().values
         if self.draws is not None:
             n_steps = (len(self.points) - self.n_components) * self.settings.sample_thin
