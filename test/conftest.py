@@ -33,12 +33,15 @@ os.environ.setdefault('OPENBLAS_NUM_THREADS', '1')
 # No test talks to another machine.
 os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'LOCALHOST'
 
-#: Folders and files that take longest, so that no worker has one of them left at the end.
+#: Folders and files that take longest, so that no worker has one of them left at the end; of these
+#: first the interpreted ones, which run while machine code for the others is being made.
 FIRST = (
+    'test/laws/test_space_laws.py',
+    'test/laws/test_primitive_laws.py',
     'test/laws/',
+    'test/core/planning/test_spaces.py',
     'test/experiments/test_experiments.py',
     'test/core/sampling/test_walk_laws.py',
-    'test/core/planning/test_spaces.py',
     'test/core/kernels/test_tiers.py',
     'test/cli/test_readme.py',
     'test/cli/test_demo.py',
@@ -49,8 +52,7 @@ FIRST = (
     'test/test_package.py',
     'test/ros/',
 )
-#: Folders whose tests all run in one worker, since they share kernels that nobody else needs. Nor
-#: do they need those of others, so this worker begins while the others wait for theirs.
+#: Folders whose tests all run in one worker, since they share kernels that nobody else needs.
 TOGETHER = ('test/laws/',)
 #: New objects after which Python looks for garbage: the compiler makes many, and few are garbage.
 GARBAGE_EVERY = 50_000
@@ -101,11 +103,16 @@ def pytest_collection_finish() -> None:
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_runtest_setup(item: pytest.Item) -> None:
-    """Wait for what most tests need; set what a kernel without machine code does when called."""
-    if not item.nodeid.startswith(TOGETHER):
-        _load_machine_code()
+    """
+    Set what a kernel without machine code does when called; wait for what most tests need.
+
+    Interpreted tests begin without it, and so do tests whose kernels are their own.
+    """
     is_marked = item.get_closest_marker('interpreted') is not None
-    modes.set_mode('interpreted' if is_marked and MARKS_COUNT else MODE)
+    is_interpreted = is_marked and MARKS_COUNT
+    if not (is_interpreted or (is_marked and item.nodeid.startswith(TOGETHER))):
+        _load_machine_code()
+    modes.set_mode('interpreted' if is_interpreted else MODE)
 
 
 @cache
