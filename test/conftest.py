@@ -43,17 +43,19 @@ FIRST = (
     'test/experiments/test_experiments.py',
     'test/core/sampling/test_walk_laws.py',
     'test/core/kernels/test_tiers.py',
-    'test/cli/test_readme.py',
+    'test/cli/test_pages.py',
     'test/cli/test_demo.py',
     'test/core/planning/',
     'test/core/kernels/',
     'test/core/sampling/',
+    'test/core/theory/',
     'test/core/trajectories/',
     'test/test_package.py',
     'test/ros/',
 )
-#: Folders whose tests all run in one worker, since they share kernels that nobody else needs.
-TOGETHER = ('test/laws/',)
+#: Folders whose tests all run in one worker, since they share kernels and results of computations
+#: that nobody else needs.
+TOGETHER = ('test/laws/', 'test/core/theory/')
 #: New objects after which Python looks for garbage: the compiler makes many, and few are garbage.
 GARBAGE_EVERY = 50_000
 WARM_UP = 'from hnr_planner.core import warm_up; warm_up()'
