@@ -33,25 +33,33 @@ os.environ.setdefault('OPENBLAS_NUM_THREADS', '1')
 # No test talks to another machine.
 os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'LOCALHOST'
 
-#: Folders and files that take longest, so that no worker has one of them left at the end.
+#: Folders and files that take longest, so that no worker has one of them left at the end; of these
+#: first the interpreted ones, which run while machine code for the others is being made.
 FIRST = (
+    'test/laws/test_space_laws.py',
+    'test/laws/test_primitive_laws.py',
     'test/laws/',
+    'test/core/planning/test_spaces.py',
+    'test/core/spaces/test_far_spaces.py',
+    'test/core/spaces/test_beyond.py',
+    'test/core/spaces/test_piece_tree.py',
+    'test/core/spaces/test_sheared.py',
     'test/experiments/test_experiments.py',
     'test/core/sampling/test_walk_laws.py',
-    'test/core/planning/test_spaces.py',
     'test/core/kernels/test_tiers.py',
-    'test/cli/test_readme.py',
+    'test/cli/test_pages.py',
     'test/cli/test_demo.py',
     'test/core/planning/',
     'test/core/kernels/',
     'test/core/sampling/',
+    'test/core/theory/',
     'test/core/trajectories/',
     'test/test_package.py',
     'test/ros/',
 )
-#: Folders whose tests all run in one worker, since they share kernels that nobody else needs. Nor
-#: do they need those of others, so this worker begins while the others wait for theirs.
-TOGETHER = ('test/laws/',)
+#: Folders whose tests all run in one worker, since they share kernels and results of computations
+#: that nobody else needs.
+TOGETHER = ('test/laws/', 'test/core/theory/')
 #: New objects after which Python looks for garbage: the compiler makes many, and few are garbage.
 GARBAGE_EVERY = 50_000
 WARM_UP = 'from hnr_planner.core import warm_up; warm_up()'
@@ -101,11 +109,16 @@ def pytest_collection_finish() -> None:
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_runtest_setup(item: pytest.Item) -> None:
-    """Wait for what most tests need; set what a kernel without machine code does when called."""
-    if not item.nodeid.startswith(TOGETHER):
-        _load_machine_code()
+    """
+    Set what a kernel without machine code does when called; wait for what most tests need.
+
+    Interpreted tests begin without it, and so do tests whose kernels are their own.
+    """
     is_marked = item.get_closest_marker('interpreted') is not None
-    modes.set_mode('interpreted' if is_marked and MARKS_COUNT else MODE)
+    is_interpreted = is_marked and MARKS_COUNT
+    if not (is_interpreted or (is_marked and item.nodeid.startswith(TOGETHER))):
+        _load_machine_code()
+    modes.set_mode('interpreted' if is_interpreted else MODE)
 
 
 @cache

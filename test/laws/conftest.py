@@ -1,12 +1,15 @@
 """What the laws of spaces share: one of each kind, and where draws come from."""
 
-from test.laws.spaces import SPACES
+from test.laws.spaces import LONG, QUICK, SPACES
 
 import numpy as np
 import pytest
 
+#: Those that wait for machine code come last: it is being made while the others are held.
+EACH_SPACE = [*(pytest.param(name, marks=pytest.mark.interpreted) for name in QUICK), *LONG]
 
-@pytest.fixture(scope='module', params=SPACES)
+
+@pytest.fixture(scope='module', params=EACH_SPACE)
 def space(request):
     return SPACES[request.param]()
 

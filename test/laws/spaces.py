@@ -134,22 +134,8 @@ def _far_rooms() -> UnionSpace:
     )
 
 
-SPACES: dict[str, Callable[[], object]] = {
-    'grid in cells': lambda: GridSpace.from_blocked(maps.TWO_ROOMS),
-    'grid in metres': lambda: GridSpace.from_blocked(maps.U_SHAPE, 0.05, SHIFTED),
-    'grid turned': lambda: GridSpace.from_blocked(maps.TWO_ROOMS, 0.05, TURNED),
-    'grid of speckle, turned round': lambda: GridSpace.from_blocked(
-        maps.speckle(15, 20, 0.3, seed=1), 0.25, (-1.0, 7.5, np.pi)
-    ),
-    'grid of speckle, sparse': lambda: GridSpace.from_blocked(
-        maps.speckle(60, 80, 0.02, seed=2), 0.1, (5.0, 5.0, -0.3)
-    ),
-    'grid without obstacles': lambda: GridSpace.from_blocked(np.zeros((5, 9), bool), 0.2, TURNED),
-    'grid of one cell': lambda: GridSpace.from_blocked(maps.ONE_CELL, 3.0),
-    'grid of one row': lambda: GridSpace.from_blocked(maps.CORRIDOR, 0.05, TURNED),
-    'grid, checkerboard': lambda: GridSpace.from_blocked(maps.CHECKERBOARD, 0.5, SHIFTED),
-    'grid, spiral': lambda: GridSpace.from_blocked(maps.SPIRAL, 1.0, TURNED),
-    'grid, surveyed': _surveyed,
+#: Spaces whose laws take less time interpreted than their kernels take to compile.
+QUICK: dict[str, Callable[[], object]] = {
     'box': lambda: BoxSpace((-1.0, 2.0, 0.0), (1.0, 2.5, 8.0)),
     'interval': lambda: BoxSpace([3.0], [4.0]),
     'ball': lambda: BallSpace((5.0, -3.0, 0.5), 0.25),
@@ -158,10 +144,6 @@ SPACES: dict[str, Callable[[], object]] = {
     'polygons': _rooms,
     'sheared ball': lambda: ShearedSpace(BallSpace((1.0, -2.0, 0.5), 0.75), -1.5),
     'sheared box': lambda: ShearedSpace(BoxSpace((0.0, 0.0), (3.0, 0.5)), 0.8),
-    'oracle': lambda: OracleSpace(_is_in_ring, (-1.1, -1.2), (1.2, 1.1), resolution=2e-3),
-    'oracle of chords': lambda: OracleSpace.from_chord(
-        _way_in_saucer, (-1.0, -1.0, -1.0), (1.0, 1.0, 1.0), resolution=5e-3
-    ),
     'union of a kind': lambda: UnionSpace(
         BoxSpace((0.0, 0.0), (0.3, 1.0)),
         BoxSpace((0.1 + 0.2, 0.0), (1.0, 0.2)),
@@ -183,10 +165,33 @@ SPACES: dict[str, Callable[[], object]] = {
         [[-1.0, 0.0], [0.0, -1.0], [1.0, 2.0]], [-FAR[0], -FAR[1], FAR @ (1, 2) + 0.5]
     ),
     'rooms far away': _far_rooms,
-    'mapped': lambda: MappedSpace(
-        _bend, _unbend, BoxSpace((-1.0, -0.5), (1.0, 0.5)), resolution=2e-3
-    ),
     'product': lambda: ProductSpace(
         GridSpace.from_blocked(maps.TWO_ROOMS, 0.1), BallSpace([0.0], 2)
     ),
 }
+#: Spaces that look at hundreds of points for a chord, and grids, whose kernels all requests need.
+LONG: dict[str, Callable[[], object]] = {
+    'oracle': lambda: OracleSpace(_is_in_ring, (-1.1, -1.2), (1.2, 1.1), resolution=2e-3),
+    'oracle of chords': lambda: OracleSpace.from_chord(
+        _way_in_saucer, (-1.0, -1.0, -1.0), (1.0, 1.0, 1.0), resolution=5e-3
+    ),
+    'mapped': lambda: MappedSpace(
+        _bend, _unbend, BoxSpace((-1.0, -0.5), (1.0, 0.5)), resolution=2e-3
+    ),
+    'grid in cells': lambda: GridSpace.from_blocked(maps.TWO_ROOMS),
+    'grid in metres': lambda: GridSpace.from_blocked(maps.U_SHAPE, 0.05, SHIFTED),
+    'grid turned': lambda: GridSpace.from_blocked(maps.TWO_ROOMS, 0.05, TURNED),
+    'grid of speckle, turned round': lambda: GridSpace.from_blocked(
+        maps.speckle(15, 20, 0.3, seed=1), 0.25, (-1.0, 7.5, np.pi)
+    ),
+    'grid of speckle, sparse': lambda: GridSpace.from_blocked(
+        maps.speckle(60, 80, 0.02, seed=2), 0.1, (5.0, 5.0, -0.3)
+    ),
+    'grid without obstacles': lambda: GridSpace.from_blocked(np.zeros((5, 9), bool), 0.2, TURNED),
+    'grid of one cell': lambda: GridSpace.from_blocked(maps.ONE_CELL, 3.0),
+    'grid of one row': lambda: GridSpace.from_blocked(maps.CORRIDOR, 0.05, TURNED),
+    'grid, checkerboard': lambda: GridSpace.from_blocked(maps.CHECKERBOARD, 0.5, SHIFTED),
+    'grid, spiral': lambda: GridSpace.from_blocked(maps.SPIRAL, 1.0, TURNED),
+    'grid, surveyed': _surveyed,
+}
+SPACES = QUICK | LONG

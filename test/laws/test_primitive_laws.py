@@ -4,6 +4,7 @@ The laws of the primitives that composed spaces are made of, held on every compi
 ``first_entry`` is held against points along the line: nothing is free before it, something after.
 """
 
+import os
 from test.laws.test_space_laws import random_points, rounding, size, tolerance
 from typing import NamedTuple
 
@@ -18,7 +19,8 @@ import numpy as np
 import pytest
 
 N = 300
-ALONG = 400
+#: Points along a line; interpreted, most of the time is theirs.
+ALONG = 400 if 'HNR_COMPILE_ALL' in os.environ else 100
 
 
 class Line(NamedTuple):
@@ -63,7 +65,7 @@ def lines(space, rng):
 
 
 def test_the_closure_holds_every_free_point(space, rng):
-    points = random_points(space, rng, 20 * N)
+    points = random_points(space, rng, 4 * N)
     assert all(touching(space.compiled, points[space.contains(points)]))
 
 
@@ -112,6 +114,7 @@ def test_a_line_leaves_where_it_would_have_left_from_anywhere_before(space, rng)
             assert end == pytest.approx(upper, abs=1e-9)
 
 
+@pytest.mark.sweep
 def test_interpreted_and_compiled_answer_alike(space, rng):
     for (point, direction), _ in zip(lines(space, rng), range(30), strict=False):
         compiled = line(space.compiled, point, direction, 0.0)

@@ -39,10 +39,14 @@ def random_points(space, rng, n=N):
 
 
 def free_points(space, rng, n=N):
-    points = random_points(space, rng, 40 * n + 1000)
-    points = points[space.contains(points)][:n]
-    assert len(points) == n
-    return points
+    """Return points drawn until so many of them are free: at least a fortieth of all has to be."""
+    found = []
+    for _ in range(40):
+        points = random_points(space, rng, n + 25)
+        found.extend(points[space.contains(points)])
+        if len(found) >= n:
+            return np.array(found[:n])
+    raise AssertionError(f'of {40 * (n + 25)} points {len(found)} are free')
 
 
 def random_lines(space, rng, n=N):

@@ -48,7 +48,15 @@ SPACES: dict[str, tuple[Space, list[float]]] = {
     'full polytope': (polytope(60, 4), [0.0] * 4),
     'difference': (HOLED, [0.1, 0.2, 0.3]),
 }
-EACH_SPACE = pytest.mark.parametrize(('space', 'start'), SPACES.values(), ids=SPACES)
+#: Spaces whose walks would be compiled for them alone.
+FURTHER = ('difference',)
+EACH_SPACE = pytest.mark.parametrize(
+    ('space', 'start'),
+    [
+        pytest.param(*values, id=name, marks=[pytest.mark.sweep] * (name in FURTHER))
+        for name, values in SPACES.items()
+    ],
+)
 EACH_POLYTOPE = pytest.mark.parametrize('name', ['simplex', 'full polytope'])
 EACH_WALK = pytest.mark.parametrize('walk', [*WALKS, BallWalk(0.3, segment_visible=False)])
 

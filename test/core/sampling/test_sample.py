@@ -102,6 +102,7 @@ def test_a_malformed_argument_is_refused(arguments, words: str):
         sample(SPACE, **request)
 
 
+@pytest.mark.interpreted
 @pytest.mark.parametrize('name', SPACES)
 def test_every_space_can_be_pickled_for_other_processes(name):
     space = SPACES[name]()

@@ -29,7 +29,7 @@ N_COORDINATE = 100_000
 N_CHAINS, N_STEPS = 2_000, 200
 
 #: Sets whose walks would be compiled for them alone.
-FURTHER = ('hall and dome', 'court with pillars', 'banana, 3-D')
+FURTHER = ('hall and dome', 'court with pillars', 'banana, 3-D', 'stone, 3-D')
 
 
 def marked(name: str, *values: object) -> object:

@@ -19,6 +19,8 @@ import numpy as np
 import pytest
 import shapely
 
+pytestmark = pytest.mark.interpreted
+
 #: A place in the coordinates of a map projection [m].
 PLACE = np.array([691_000.0, 5_334_000.0])
 

@@ -101,6 +101,7 @@ def test_nothing_outside_the_bounds_is_asked_for():
     assert not space.contains((1.0, 0.0)) and not space.contains((7.0, 0.0))
 
 
+@pytest.mark.interpreted
 def test_it_can_be_taken_away():
     hole = OracleSpace(lambda x: bool(np.hypot(*x) < 0.5), *SQUARE, resolution=0.01)
     space = DifferenceSpace(BoxSpace((-2.0, -2.0), (2.0, 2.0)), hole)

@@ -56,6 +56,7 @@ class SlowRing(Ring):
         )
 
 
+@pytest.mark.interpreted
 @pytest.mark.parametrize('walk', ['hit_and_run', 'coordinate_hit_and_run', 'ball_walk'])
 def test_walks_stay_in_it_and_go_round(walk):
     space = Ring()
@@ -73,6 +74,7 @@ def test_chords_of_kernels_are_its_own():
         assert interpreted(chord_or_empty)(space.data, x, u) == chord_or_empty(space.data, x, u)
 
 
+@pytest.mark.interpreted
 def test_paths_are_planned_in_it():
     found = plan(Ring(), (-1.5, 0.0), (1.5, 0.0), seed=1, time_limit=np.inf, max_iterations=10**5)
     assert found.status is PlannerStatus.SOLVED
@@ -88,6 +90,7 @@ def test_paths_are_judged_by_its_own_verdict_on_motions():
     assert SlowRing().first_blocked_segment([*short, *long]) == 1
 
 
+@pytest.mark.interpreted
 def test_it_can_be_taken_away_and_pickled():
     rest = DifferenceSpace(BoxSpace((-2.5, -2.5), (2.5, 2.5)), pickle.loads(pickle.dumps(Ring())))
     assert rest.contains([(0.0, 0.0), (1.5, 0.0), (2.2, 2.2)]).tolist() == [True, False, True]

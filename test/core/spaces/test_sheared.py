@@ -5,6 +5,8 @@ from hnr_planner.core.spaces.curves.polynomials import next_change
 import numpy as np
 import pytest
 
+pytestmark = pytest.mark.interpreted
+
 SPACES = {
     'disc': lambda: ShearedSpace(BallSpace((2.0, -1.0), 1.5), 0.9),
     'ball': lambda: ShearedSpace(BallSpace(np.full(5, 3.0), 0.5), -4.0),

@@ -94,6 +94,7 @@ def test_similarities_keep_it():
     assert here[here < 1e6] == pytest.approx(there[here < 1e6], rel=1e-7)
 
 
+@pytest.mark.interpreted
 @pytest.mark.parametrize('dim', [2, 3, 6])
 def test_affine_maps_keep_it(dim):
     rng = np.random.default_rng(4)

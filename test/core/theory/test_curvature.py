@@ -44,6 +44,7 @@ def test_every_closed_curve_turns_once_round():
         assert curve_curvature(curve).kappa >= 2 * math.pi * (1 - 1e-9)
 
 
+@pytest.mark.interpreted
 def test_a_slice_has_to_be_seen():
     """A centre in the shell does not see all of the slice: what comes out is no smooth curve."""
     shell = DifferenceSpace(BallSpace((0.0, 0.0, 0.0), 2.0), BallSpace((0.0, 0.0, 0.0), 1.0))

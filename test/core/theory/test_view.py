@@ -53,6 +53,7 @@ def test_it_holds_the_points_that_are_seen_and_no_others(space, u):
     assert 0 < inside.sum() < 3000 or space is SQUARE
 
 
+@pytest.mark.interpreted
 def test_a_polygon_with_a_hole():
     """A square room with a square pillar: what lies behind the pillar is a trapezium."""
     room = PolygonSpace(box(-2, -2, 2, 2).difference(box(-1, -1, 1, 1)))

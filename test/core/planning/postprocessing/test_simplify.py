@@ -187,6 +187,11 @@ def balls(dim: int) -> DifferenceSpace:
     return DifferenceSpace(BoxSpace([0.0] * dim, [10.0] * dim), *obstacles)
 
 
+#: Seeds of the searches; interpreted, they take less time than their kernels to compile.
+SEEDS = range(8) if 'HNR_COMPILE_ALL' in os.environ else range(2)
+
+
+@pytest.mark.interpreted
 @pytest.mark.parametrize(
     ('space', 'start', 'goal'),
     [
@@ -199,7 +204,7 @@ def balls(dim: int) -> DifferenceSpace:
     ids=['wall 2', 'wall 3', 'wall 7', 'balls 3', 'balls 5'],
 )
 def test_no_path_is_left_raw_or_longer_than_by_plain_shortcuts(space: Space, start, goal):
-    for seed in range(8):
+    for seed in SEEDS:
         request = {'seed': seed, 'time_limit': math.inf}
         raw = plan(space, start, goal, simplify=False, **request).path
         result = plan(space, start, goal, **request)
