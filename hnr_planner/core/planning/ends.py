@@ -1,7 +1,8 @@
 """Ends of a request that may be moved: the goal within a tolerance, the start out of inflation."""
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 import math
+from typing import NamedTuple
 
 from hnr_planner.core.checks import check_number, Floats
 from hnr_planner.core.errors import RequestError
@@ -13,8 +14,7 @@ from hnr_planner.core.spaces.space import Space
 import numpy as np
 
 
-@dataclass(frozen=True)
-class Allowance:
+class Allowance(NamedTuple):
     """
     Validated limits on how far the ends of a request may be moved.
 
@@ -58,8 +58,7 @@ def check_allowance(space: Space, goal_tolerance: float, start_escape: float) ->
     return allowance
 
 
-@dataclass(frozen=True)
-class MovedRequest:
+class MovedRequest(NamedTuple):
     """
     A request whose ends were moved where that was allowed and needed.
 
@@ -147,11 +146,10 @@ def _with_free_start(moved: MovedRequest, radius: float) -> MovedRequest:
     outside = escape_point(request.space, request.start, request.goal, radius)
     if outside is None:
         failure = f'; no straight segment of {radius:g} m at most leads to free space'
-        return replace(moved, reasons=moved.reasons + failure)
+        return moved._replace(reasons=moved.reasons + failure)
     escape = math.dist(request.start, outside)
     request = request.moved(start=outside)
-    return replace(
-        moved,
+    return moved._replace(
         request=request,
         outcome=outcome_without_search(request),
         escape=escape,
@@ -173,12 +171,11 @@ def _with_reachable_goal(moved: MovedRequest, tolerance: float) -> MovedRequest:
     nearest = space.nearest_reachable(request.start, request.goal, tolerance)
     if nearest is None:
         failure = f'; nothing within {tolerance:g} m of it can be reached'
-        return replace(moved, reasons=failure + moved.reasons)
+        return moved._replace(reasons=failure + moved.reasons)
     offset = math.dist(nearest, request.goal)
     # The end has been moved already: a region around it would move it once more.
     request = request.moved(goal=nearest, goal_radius=0.0)
-    return replace(
-        moved,
+    return moved._replace(
         request=request,
         outcome=outcome_without_search(request),
         goal_offset=offset,

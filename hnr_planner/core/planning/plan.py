@@ -39,6 +39,7 @@ from hnr_planner.core.planning.result import FirstSolution, PlannerStatus, PlanR
 from hnr_planner.core.planning.tiers import with_remark
 from hnr_planner.core.spaces.poses.pose_space import PoseSpace
 from hnr_planner.core.spaces.space import Space
+from hnr_planner.core.trees import NONE
 import numpy as np
 from numpy.typing import ArrayLike
 
@@ -230,14 +231,15 @@ def _result_of_search(
         rounds, patience = effort.optimize_rounds, effort.optimize_patience
         best, work = optimize(request, best, rounds, patience, optimizing, began)
         budget.cut = budget.cut or optimizing.cut
+    length = path_length(best.path) if len(best.path) else math.inf
     samples = request.space.from_kernel(best.search.samples)
     samples[0] = request.start
     return PlanResult(
         status=best.status,
-        message=_message(request, best, work.iterations, began),
+        message=_message(request, best, length, work.iterations, began),
         planner=best.planner,
         path=best.path,
-        length=path_length(best.path) if len(best.path) else math.inf,
+        length=length,
         samples=samples,
         parents=best.search.parents.copy(),
         iterations=work.iterations,
@@ -275,7 +277,7 @@ def _result_without_search(
         path=path,
         length=length,
         samples=path[:samples].copy(),
-        parents=np.full(samples, -1),
+        parents=np.array([NONE] * samples, dtype=np.int64),
         iterations=0,
         counts={},
         elapsed=working_time() - began,
@@ -286,10 +288,13 @@ def _result_without_search(
     )
 
 
-def _message(request: Request, best: Attempt, iterations: int, began: float) -> str:
-    """Return a description of how the search of ``best`` ended, with lengths [m] and counts."""
+def _message(request: Request, best: Attempt, length: float, iterations: int, began: float) -> str:
+    """
+    Return a description of how the search of ``best`` ended.
+
+    It states ``length`` [m], that of the path, and ``iterations``, those of all searches.
+    """
     if best.status is PlannerStatus.SOLVED and best.first is not None:
-        length = path_length(best.path)
         found = f'path of {length:.6g} m with {len(best.path)} vertices'
         as_found = request.simplify and not best.search.taut and best.path is best.first.path
         nothing = ', of which no shortcut is free' if as_found and len(best.path) > 2 else ''

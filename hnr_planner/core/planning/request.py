@@ -1,7 +1,6 @@
 """Validation of planning requests, and the outcome of the requests that need no search."""
 
 from dataclasses import dataclass, replace
-from functools import cached_property
 import math
 from typing import Any
 
@@ -159,7 +158,7 @@ class Request:
     seed: int
     problem: Problem
 
-    @cached_property
+    @property
     def straight_length(self) -> float:
         """Straight distance [m] from the start to the goal region: no path is shorter."""
         distance = math.dist(self.start.tolist(), self.goal.tolist())
@@ -282,4 +281,4 @@ def _components_of_ends(problem):
 
 def in_words(point: Floats) -> str:
     """Return the coordinates of a point (dim,) in round brackets, for a message."""
-    return '(' + ', '.join(f'{x:g}' for x in point) + ')'
+    return '(' + ', '.join(f'{x:g}' for x in point.tolist()) + ')'

@@ -20,6 +20,7 @@ from hnr_planner.core.planning.planners.hit_and_run import _walk
 from hnr_planner.core.planning.postprocessing import clearance as stand_off
 from hnr_planner.core.planning.postprocessing import shortcuts
 from hnr_planner.core.spaces.primitives import chord_or_empty
+from hnr_planner.core.trees import NONE
 import numpy as np
 import pytest
 
@@ -152,15 +153,15 @@ def test_rrt():
 
 
 def test_hit_and_run_connect():
-    outcomes = []
-    for begin in (connect._begin, interpreted(connect._begin)):
-        trees, done = begin(PROBLEM, stream(5), 120)
-        rows = int(trees.table.sizes.sum())
-        assert rows > 10
-        outcomes.append(
-            [done[0], done[1:], trees.table.vertices[:rows], trees.table.parents[:rows]]
-        )
-    assert_same(*outcomes)
+    for n_steps, is_solved in ((2, False), (120, True)):
+        outcomes = []
+        for begin in (connect._begin, interpreted(connect._begin)):
+            table, trees, done = begin(PROBLEM, stream(5), n_steps)
+            rows = int(table.sizes.sum())
+            assert rows == 2 + done[1]
+            assert (done[0][0] != NONE) == (trees is None) == is_solved
+            outcomes.append([done[0], done[1:], table.vertices[:rows], table.parents[:rows]])
+        assert_same(*outcomes)
 
 
 @pytest.mark.parametrize('islands', [NO_ISLANDS, islands_at(GRID.island_points)])

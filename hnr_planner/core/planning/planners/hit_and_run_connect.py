@@ -91,11 +91,9 @@ class HitAndRunConnectSearch(TwoTreeSearch):
 
     _redraws: int = field(init=False, default=0)
     #: None until the first steps, whose kernel call also makes the trees: one call less.
+    _table: TreePair | None = field(init=False, default=None)
+    #: None before the first steps, and where they solved the search.
     _trees: FrontierTrees | None = field(init=False, default=None)
-
-    @property
-    def _table(self) -> TreePair | None:
-        return None if self._trees is None else self._trees.table
 
     @property
     def counts(self) -> dict[str, int]:
@@ -107,10 +105,11 @@ class HitAndRunConnectSearch(TwoTreeSearch):
         if self.solved:
             return
         if self._trees is None:
-            self._trees, grown = _begin(self.problem, self.rng, n_iterations)
+            self._table, self._trees, grown = _begin(self.problem, self.rng, n_iterations)
         else:
             rows = len(self.samples) + n_iterations
             self._trees = _with_rows(self._trees, rows)
+            self._table = self._trees.table
             grown = _grow(self.problem, self._trees, self.rng, self.iterations, n_iterations)
         self._ends, taken, redraws = grown
         self.iterations += taken
@@ -125,9 +124,18 @@ def _with_rows(trees: FrontierTrees, rows: int) -> FrontierTrees:
 
 @kernel
 def _begin(problem, rng, n_iterations):
-    """Make the trees and take their first steps; return the trees, and the result of ``_grow``."""
+    """
+    Make the trees and take their first steps; return (table, trees, result of ``_grow``).
+
+    ``trees`` is None where these steps solve the search: then only the table is of use, and to
+    return the other arrays would take longer than several steps.
+    """
     trees = _plant(problem, 2 + n_iterations)
-    return trees, _grow(problem, trees, rng, 0, n_iterations)
+    grown = _grow(problem, trees, rng, 0, n_iterations)
+    ends, _, _ = grown
+    if ends[0] != NONE:
+        return trees.table, None, grown
+    return trees.table, trees, grown
 
 
 @kernel

@@ -165,7 +165,7 @@ def _tighten(
         points = join(space.data, islands, points, rng, batch)
         pairs, tests = pairs - batch, tests + 3 * batch
     k, used = 1, 1
-    while used > 0 and budget.stop() is None:
+    while used > 0 and k < len(points) - 1 and budget.stop() is None:
         batch = min(TESTS_IN_A_BATCH, tests_max - tests)
         points, k, used = pull(space.data, islands, points, k, space.margin, batch)
         tests += used
@@ -206,17 +206,15 @@ def _shortest_over_vertices(
 
     Where a limit of the budget or ``tests_max`` ends the work, the path is the shortest found.
     """
-    lengths = np.linalg.norm(np.diff(points, axis=0), axis=1)
-    to_end = np.append(np.cumsum(lengths[::-1])[::-1], 0.0)
-    following = np.arange(1, len(points) + 1)
+    to_end, following = np.zeros(len(points)), np.arange(1, len(points) + 1)
     i, tests = len(points) - 2, 0
     while i >= 0 and tests < tests_max and budget.stop() is None:
         batch = min(TESTS_IN_A_BATCH, tests_max - tests)
         i, used = relax(space.data, islands, points, to_end, following, i, batch)
         tests += used
-    kept = [0]
+    kept, links = [0], following.tolist()
     while kept[-1] < len(points) - 1:
-        kept.append(int(following[kept[-1]]))
+        kept.append(links[kept[-1]])
     return points[kept], tests
 
 
