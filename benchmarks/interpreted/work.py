@@ -14,7 +14,7 @@ from hnr_planner.core import ALGORITHMS, GridSpace, KINODYNAMIC_PLANNERS, plan
 from hnr_planner.core.kernels.clock import working_time
 from hnr_planner.core.planning.limits import Budget
 from hnr_planner.core.planning.planner import make_problem
-from hnr_planner.core.planning.planners.auto import flood
+from hnr_planner.core.planning.planners.flood_fill import FloodFill
 from hnr_planner.core.spaces.grid.components import nearest_in_component
 from hnr_planner.core.spaces.grid.slabs import build_slabs
 from hnr_planner.experiments.requests import far_pairs
@@ -136,7 +136,8 @@ def _groups(maps: MapStore, space: GridSpace, pairs: Floats) -> dict[str, list[W
         Budget(working_time() + limit, cancel=cancel).within(lambda: call(k), None)
 
     def flooded(k: int) -> None:
-        flood(make_problem(space, pairs[k, 0], pairs[k, 1], 0.0))
+        fill = FloodFill(make_problem(space, pairs[k, 0], pairs[k, 1], 0.0))
+        fill.advance(space.data.labels.size)
 
     def nearest(_k: int) -> None:
         nearest_in_component(space.data.labels, 1, np.array(FAR_AWAY.point), space.margin)

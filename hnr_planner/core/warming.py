@@ -23,7 +23,7 @@ from hnr_planner.core.planning.batch.tour import tour
 from hnr_planner.core.planning.limits import Budget
 from hnr_planner.core.planning.plan import plan
 from hnr_planner.core.planning.planner import make_problem
-from hnr_planner.core.planning.planners.auto import flood
+from hnr_planner.core.planning.planners.flood_fill import FloodFill
 from hnr_planner.core.planning.poses.search import POSE_PLANNERS
 from hnr_planner.core.planning.registry import ALGORITHMS
 from hnr_planner.core.sampling.sample import sample
@@ -149,10 +149,17 @@ def find_paths() -> None:
     plan(space, CORNER, OTHER_CORNER, seed=0, alternatives=2, clearance=1.0, time_limit=math.inf)
     tour(space, (CORNER, OTHER_CORNER), n_jobs=1)
     improve_ring(np.zeros((3, 3)), np.arange(3), 1, stream(0))  # for tours of more stops
-    flood(make_problem(space, np.array(CORNER), np.array(OTHER_CORNER), 0.0))
+    _fill(space)
     space.nearest_reachable(CORNER, OTHER_CORNER, 1.0)
     space.clearance(CORNER)
     space.path_clearance([CORNER, OTHER_CORNER])
+
+
+def _fill(space: GridSpace) -> None:
+    """Find a path by a flood fill, which ``auto`` begins after many steps only."""
+    fill = FloodFill(make_problem(space, np.array(CORNER), np.array(OTHER_CORNER), 0.0))
+    fill.advance(space.data.labels.size)
+    _ = fill.path
 
 
 def find_motions() -> None:

@@ -138,21 +138,6 @@ def exit_beyond(space: CompiledSpace, x: Floats, u: Floats, t: float) -> float:
     return first_exit(space, x, u, 0.0, math.inf)
 
 
-@dispatched
-@kernel
-def flood_path(
-    space: CompiledSpace, start: Floats, goal: Floats, goal_radius: float, margin: float
-) -> Floats:
-    """
-    Return a free path (m, dim) from ``start`` into the goal region; (0, dim) if there is none.
-
-    The path need not be short. It ends at ``goal`` for a ``goal_radius`` of 0, else at a point
-    within ``goal_radius`` of ``goal`` and at least ``margin`` inside free space. The
-    default, for a space without a flood fill, is (0, dim). All lengths are in the kernel frame.
-    """
-    return np.empty((0, len(start)))
-
-
 @kernel
 def are_free(space, points):
     """Return which of ``points`` (k, dim) are free: (k,) bool."""

@@ -23,13 +23,12 @@ from hnr_planner.core.spaces.grid.components import (
 )
 from hnr_planner.core.spaces.grid.curves import first_exit_from_grid
 from hnr_planner.core.spaces.grid.fields import components, free_distance, inflate
-from hnr_planner.core.spaces.grid.flood import flood_path_in_grid
 from hnr_planner.core.spaces.grid.frame import decimal, GridFrame
 from hnr_planner.core.spaces.grid.framed_space import FramedSpace
 from hnr_planner.core.spaces.grid.obstacles import costmap_inflation, Obstacles
 from hnr_planner.core.spaces.grid.slabs import build_slabs, Slabs
 from hnr_planner.core.spaces.grid.traversal import GridData
-from hnr_planner.core.spaces.primitives import component, flood_path
+from hnr_planner.core.spaces.primitives import component
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -37,7 +36,6 @@ from numpy.typing import ArrayLike, NDArray
 TYPICAL_CELLS = 10_000
 
 first_exit_on_curve.register(GridData)(first_exit_from_grid)
-flood_path.register(GridData)(flood_path_in_grid)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
