@@ -116,6 +116,7 @@ class MovedRequest(NamedTuple):
             first_solution=first,
             escape=self.escape,
             lower_bound=result.lower_bound + self.escape,
+            clear_lower_bound=result.clear_lower_bound + self.escape,
         )
 
     def _with_start(self, path: Floats) -> Floats:
