@@ -80,8 +80,7 @@ class Connections(NamedTuple):
     bends: Floats
 
 
-@kernel
-def empty_connections():
+def empty_connections() -> Connections:
     """Return the arrays for the connections between two poses."""
     return Connections(
         np.zeros((N_KEPT + 1, N_MOTIONS, 3)),

@@ -7,15 +7,18 @@ The guide of a search among poses: the shortest path of the largest disc in the 
 import math
 
 from hnr_planner.core.checks import Floats
-from hnr_planner.core.kernels.kernel import kernel
-from hnr_planner.core.kernels.streams import normal, Stream, stream, uniform
+from hnr_planner.core.kernels.kernel import inlined, kernel
+from hnr_planner.core.kernels.streams import normal, uniform
 from hnr_planner.core.planning.limits import Budget, run
-from hnr_planner.core.planning.planner import make_problem
-from hnr_planner.core.planning.planners.polyanya import Polyanya
+from hnr_planner.core.planning.planner import Problem
+from hnr_planner.core.planning.planners.cone_expansion import begin as begin_search
+from hnr_planner.core.planning.planners.cones import FINAL, N_VERTICES, NONE
+from hnr_planner.core.planning.planners.polyanya import PolyanyaSearch
+from hnr_planner.core.planning.planners.taut_path import taut_path
 from hnr_planner.core.planning.result import PlannerStatus
 from hnr_planner.core.spaces.poses.disc import Disc
 from hnr_planner.core.spaces.poses.motion import wrapped
-from hnr_planner.core.spaces.primitives import contains
+from hnr_planner.core.spaces.primitives import component, contains
 import numpy as np
 
 #: Standard deviations of a pose along the guide: of its place, in strides of the
@@ -28,14 +31,16 @@ N_DRAWS = 12
 #: Side of the square in which the place of a detour is drawn, in two strides, and the largest
 #: number of places until a guide goes round.
 DETOUR, N_PLACES = 8.0, 20
+#: Most expansions of the search for a guide that are made at once, and rows for what they add.
+N_AT_ONCE, ROWS_AT_ONCE = 500, 4096
 #: Probability that such a pose is near the farthest that its tree has reached, and how far behind
 #: that, as a fraction of the distance ahead.
 NEARBY, BEHIND = 0.8, 0.5
 
 
-def shortest_guide(disc: Disc, start: Floats, goal: Floats, rng: Stream, budget: Budget) -> Floats:
+def shortest_guide(disc: Disc, start: Floats, goal: Floats, budget: Budget) -> Floats:
     """
-    Return the shortest path of the disc between two poses (3,) of the robot, map frame.
+    Return the shortest path of the disc between two poses (3,) of the robot, kernel frame.
 
     Returns
     -------
@@ -44,7 +49,7 @@ def shortest_guide(disc: Disc, start: Floats, goal: Floats, rng: Stream, budget:
         budget is met first.
 
     """
-    return _joined(_shortest(disc, disc.place(start), disc.place(goal), rng, budget))
+    return _shortest(disc, disc.cell_place(start), disc.cell_place(goal), budget)
 
 
 def detour_guide(
@@ -57,7 +62,7 @@ def detour_guide(
     seed: int,
 ) -> Floats:
     """
-    Return a guide between two poses (3,) by way of a random place near where a search is stuck.
+    Return a guide between two poses by way of a random place near where a search is stuck.
 
     Where the shortest path of the disc leads through a place that is too tight for the footprint,
     the way round leads by another place near there, and not through that one if there is a choice.
@@ -74,17 +79,18 @@ def detour_guide(
         Seed of the random place.
 
     """
-    rng, points = np.random.default_rng(seed), np.empty((0, 2))
-    begin, end = disc.place(start), disc.place(goal)
+    rng, points = np.random.default_rng(seed), np.empty((0, 3))
+    begin, end = disc.cell_place(start), disc.cell_place(goal)
+    here = component(disc.space.data, begin)
     for _ in range(N_PLACES):
-        place = disc.space.from_kernel(stuck + DETOUR * stride * rng.uniform(-1.0, 1.0, 2))
-        if not disc.space.connected(begin, place):
+        place = stuck + DETOUR * stride * rng.uniform(-1.0, 1.0, 2)
+        if component(disc.space.data, place) != here:
             continue
         legs = (begin, place), (place, end)
-        points = np.vstack([_shortest(disc, *leg, stream(seed), budget) for leg in legs])
-        if _distance(points, stuck) > stride:
+        points = np.vstack([_shortest(disc, *leg, budget) for leg in legs])
+        if _distance(points[:, :2], stuck) > stride:
             break
-    return _joined(points)
+    return with_lengths(points)
 
 
 def _distance(points: Floats, place: Floats) -> float:
@@ -97,19 +103,45 @@ def _distance(points: Floats, place: Floats) -> float:
     return float(np.hypot(*(shares[:, np.newaxis] * steps - away).T).min())
 
 
-def _shortest(disc: Disc, begin: Floats, end: Floats, rng: Stream, budget: Budget) -> Floats:
-    """Return the shortest path (k, 2) of the disc, kernel frame; (0, 2) where it is not found."""
-    problem = make_problem(disc.space, begin, end, 0.0)
-    search = Polyanya().for_space(disc.space).start(problem, rng)
+def _shortest(disc: Disc, begin: Floats, end: Floats, budget: Budget) -> Floats:
+    """Return the guide (k, 3) along the shortest path of the disc; (0, 3) if it is not found."""
+    space = disc.space
+    problem = Problem(
+        space.data, *space.kernel_bounds, begin, end, 0.0, space.margin, 1.0, space.scale
+    )
+    # Most guides are found at once. The slabs are made here too, which takes long interpreted.
+    guide = budget.within(lambda: guide_at_once(space.slabs, problem), np.empty((0, 3)))
+    if len(guide) > 0:
+        return guide
+    search = PolyanyaSearch(problem, space)
     if run(search, budget) is not PlannerStatus.SOLVED:
-        return np.empty((0, 2))
-    return search.path
+        return np.empty((0, 3))
+    return with_lengths(search.path)
 
 
-def _joined(points: Floats) -> Floats:
-    """Return the guide (k, 3) along points (k, 2)."""
-    lengths = np.hypot(*np.diff(points, axis=0).T)
-    return np.column_stack([points, np.append(0.0, np.cumsum(lengths))[: len(points)]])
+@kernel
+def guide_at_once(slabs, problem):
+    """Return the guide along the shortest path; (0, 3) if it takes over ``N_AT_ONCE`` steps."""
+    frontier, _, _ = begin_search(
+        slabs, problem.start, problem.goal, 0.0, problem.margin, ROWS_AT_ONCE, N_AT_ONCE
+    )
+    last = frontier.sizes[FINAL]
+    if last == NONE:
+        return np.empty((0, 3))
+    vertices = frontier.vertices[: frontier.sizes[N_VERTICES]]
+    return with_lengths(taut_path(problem, slabs.steps, vertices, last))
+
+
+@kernel
+def with_lengths(points):
+    """Return points (k, 2 or more) of a path with the length up to each: (k, 3)."""
+    guide, length = np.empty((len(points), 3)), 0.0
+    for k in range(len(points)):
+        x, y = points[k, 0], points[k, 1]
+        if k > 0:
+            length += math.hypot(x - points[k - 1, 0], y - points[k - 1, 1])
+        guide[k, 0], guide[k, 1], guide[k, 2] = x, y, length
+    return guide
 
 
 def point_of_guide(guide: Floats, along: float) -> Floats:
@@ -135,18 +167,40 @@ def draw_along_guide(problem, trees, tree, rng):
     along = low
     for draw in range(N_DRAWS):
         along = low + (high - low) * uniform(rng)
-        x, y = _point_of_guide(problem, along)
-        before_x, before_y = _point_of_guide(problem, along - LOOK * stride)
-        after_x, after_y = _point_of_guide(problem, along + LOOK * stride)
+        x, y, yaw = _place_along(problem, along)
         spread = SPREAD * stride * (draw + 1) / N_DRAWS
-        yaw = math.atan2(after_y - before_y, after_x - before_x) + SPREAD_YAW * normal(rng)
-        cos, sin = math.cos(yaw), math.sin(yaw)
-        pose[0] = x + spread * normal(rng) - cos * problem.disc[0] + sin * problem.disc[1]
-        pose[1] = y + spread * normal(rng) - sin * problem.disc[0] - cos * problem.disc[1]
-        pose[2] = wrapped(yaw)
+        yaw += SPREAD_YAW * normal(rng)
+        x, y = x + spread * normal(rng), y + spread * normal(rng)
+        _write_pose(problem, x, y, yaw, pose)
         if contains(problem.space, pose):
             break
     return along
+
+
+@kernel
+def write_pose_along(problem, along, pose):
+    """Write the pose along the guide after a length [cells] to ``pose`` (3,)."""
+    x, y, yaw = _place_along(problem, along)
+    _write_pose(problem, x, y, yaw, pose)
+
+
+@kernel
+def _place_along(problem, along):
+    """Return where the disc is after a length of the guide, and where it heads: (x, y, yaw)."""
+    look = LOOK * problem.space.stride
+    x, y = _point_of_guide(problem, along)
+    before_x, before_y = _point_of_guide(problem, along - look)
+    after_x, after_y = _point_of_guide(problem, along + look)
+    return x, y, math.atan2(after_y - before_y, after_x - before_x)
+
+
+@inlined
+def _write_pose(problem, x, y, yaw, pose):
+    """Write the pose (3,) at which the disc is at (x, y)."""
+    cos, sin = math.cos(yaw), math.sin(yaw)
+    pose[0] = x - cos * problem.disc[0] + sin * problem.disc[1]
+    pose[1] = y - sin * problem.disc[0] - cos * problem.disc[1]
+    pose[2] = wrapped(yaw)
 
 
 @kernel

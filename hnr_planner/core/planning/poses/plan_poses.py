@@ -6,18 +6,16 @@ start and goal, there is none for the footprint; else the shortest path of the d
 """
 
 import math
-from typing import Any, NamedTuple
+from typing import Any
 
 from hnr_planner.core.checks import Floats
 from hnr_planner.core.kernels.clock import working_time
 from hnr_planner.core.kernels.kernel import interpreted_calls
 from hnr_planner.core.kernels.streams import Stream
 from hnr_planner.core.planning.limits import Budget, run
-from hnr_planner.core.planning.poses.connections import (
-    cost_of,
-    empty_connections,
-    first_blocked_motion,
-)
+from hnr_planner.core.planning.poses.connections import cost_of, empty_connections
+from hnr_planner.core.planning.poses.ends import NOT_FREE, place_ends
+from hnr_planner.core.planning.poses.found_path import path_for_caller, PosePath
 from hnr_planner.core.planning.poses.guide import detour_guide, shortest_guide
 from hnr_planner.core.planning.poses.request import check_pose_request, PoseRequest
 from hnr_planner.core.planning.poses.search import PoseSearch
@@ -31,7 +29,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 #: Purposes of random streams.
-SEARCH, SHORTEN, GUIDE = 0, 1, 2
+SEARCH, SHORTEN = 0, 1
 #: Sections that are tried at once, for each motion of a path and at least.
 TRIES_PER_MOTION, TRIES_MIN = 4, 40
 #: Rounds of tries for one path, and consecutive rounds that lower the cost by less than the
@@ -39,31 +37,6 @@ TRIES_PER_MOTION, TRIES_MIN = 4, 40
 ROUNDS_MAX, PATIENCE, LEAST_GAIN = 60, 3, 2e-3
 #: Largest number of searches, where the caller's coordinates round a path into an obstacle.
 RESTARTS_MAX = 20
-
-
-class PosePath(NamedTuple):
-    """
-    A path in the caller's frame.
-
-    Attributes
-    ----------
-    poses : (m + 1, 3)
-        Poses [m, m, rad].
-    twists : (m, 3)
-        Twists that lead from each pose to the next in one unit of time.
-    cost : float
-        Length and prices [cells].
-
-    """
-
-    poses: Floats
-    twists: Floats
-    cost: float
-
-    @property
-    def length(self) -> float:
-        """Length of the way of the robot's origin [m]."""
-        return float(np.hypot(*self.twists.T[:2]).sum())
 
 
 def plan_poses(
@@ -89,47 +62,51 @@ def plan_poses(
 
 def _result(request: PoseRequest, effort: Effort, budget: Budget, began: float) -> PlanResult:
     """Return the result of a request; ``began`` is the time at which the call began."""
-    space = request.space
-    if not space.contains(request.start):
+    space, disc = request.space, request.space.disc
+    cells, components = place_ends(
+        space.data, space.frame, disc.space.data, disc.kernel_centre, request.ends()
+    )
+    here, *there = components.tolist()
+    if here == NOT_FREE:
         message = f'start {_words(request.start)} is {space.why_not_free(request.start)}'
         return _failure(request, PlannerStatus.INVALID_START, message, budget, began)
-    goals = request.goals()
-    if len(goals) == 0:
+    if max(there) == NOT_FREE:
         message = f'goal {_words(request.goal)} is {space.why_not_free(request.goal)}'
         return _failure(request, PlannerStatus.INVALID_GOAL, message, budget, began)
-    disc = space.disc
-    connected = [
-        g for g in goals if disc.space.connected(disc.place(request.start), disc.place(g))
-    ]
-    if not connected:
+    rows = [0, *(row for row, component in enumerate(there, start=1) if component == here)]
+    if len(rows) == 1:
         message = (
             f'no path exists from start {_words(request.start)} to goal {_words(request.goal)}: '
             f'none for the largest disc in the footprint'
         )
         return _failure(request, PlannerStatus.UNREACHABLE, message, budget, began)
-    return _search(request, disc, np.array(connected), effort, budget, began)
+    roots = cells if len(rows) == len(cells) else cells[rows]
+    return _search(request, disc, roots, effort, budget, began)
 
 
 def _search(
     request: PoseRequest,
     disc: Disc,
-    goals: Floats,
+    roots: Floats,
     effort: Effort,
     budget: Budget,
     began: float,
 ) -> PlanResult:
-    """Search for a path to one of the free ``goals`` (k, 3), and return the result."""
+    """
+    Search for a path between ``roots`` (k, 3), and return the result.
+
+    They are the start and the goals that may be reached, kernel frame.
+    """
     space, guide = request.space, np.empty((0, 3))
     if request.proposals.guided > 0.0:
-        guide = shortest_guide(disc, request.start, goals[0], request.stream(GUIDE), budget)
+        guide = shortest_guide(disc, roots[0], roots[1], budget)
     problem = request.problem(guide, disc)
-    roots = space.to_kernel(np.vstack([request.start, goals]))
 
     def other_guide(turn: int, stuck: Floats) -> Floats:
         if turn % 3 == 0:
             return guide
         return detour_guide(
-            disc, request.start, goals[0], stuck, space.data.stride, budget, request.seed + turn
+            disc, roots[0], roots[1], stuck, space.data.stride, budget, request.seed + turn
         )
 
     first, best, iterations, number = None, None, 0, 0
@@ -184,17 +161,10 @@ def _search(
 def _checked(request: PoseRequest, poses: Floats, twists: Floats) -> PosePath | None:
     """Return a path of the kernel frame in the caller's, or None where it is not free there."""
     space = request.space
-    cost = float(cost_of(request.prices, twists, len(twists), 1.0))
-    outside, turned = space.from_kernel(poses), space.twists_from_kernel(twists)
-    outside[0] = request.start
-    if np.abs(outside[-1] - request.goal).max() < 1e-9 * space.scale:
-        outside[-1] = request.goal
-    inside = space.to_kernel(outside)
-    if not space.contains(outside).all():
-        return None
-    if first_blocked_motion(space.data, inside, space.twists_to_kernel(turned)) >= 0:
-        return None
-    return PosePath(outside, turned, cost)
+    *path, is_free = path_for_caller(
+        space.data, space.frame, request.prices, poses, twists, request.start, request.goal
+    )
+    return PosePath(*path) if is_free else None
 
 
 def _shortened(request: PoseRequest, path: PosePath, rng: Stream, budget: Budget) -> PosePath:

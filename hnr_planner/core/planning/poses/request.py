@@ -93,27 +93,26 @@ class PoseRequest:
             lower,
             upper,
             guide,
-            disc.centre / space.scale,
+            disc.kernel_centre,
             WEIGHT * (1.0 / data.max_curvature if data.drive == CAR else data.reach),
             max(space.margin, STAND_OFF),
         )
 
-    def goals(self) -> Floats:
+    def ends(self) -> Floats:
         """
-        Return free poses (k, 3) of the goal region, the goal first if it is free.
+        Return the start, the goal, and further poses of the goal region (k, 3), caller's frame.
 
-        Further ones are drawn uniformly, where the region is more than one pose.
+        They are drawn uniformly, where the region is more than one pose.
         """
-        poses = self.goal[np.newaxis]
-        if self.goal_radius > 0.0 or self.heading_tolerance > 0.0:
-            rng = np.random.default_rng(self.seed)
-            angle = rng.uniform(-math.pi, math.pi, N_GOALS - 1)
-            distance = self.goal_radius * np.sqrt(rng.random(N_GOALS - 1))
-            turn = self.heading_tolerance * rng.uniform(-1.0, 1.0, N_GOALS - 1)
-            away = np.column_stack([distance * np.cos(angle), distance * np.sin(angle), turn])
-            poses = np.vstack([poses, self.goal + away])
-        free: Floats = poses[self.space.contains(poses)]
-        return free
+        ends = np.array((self.start, self.goal))
+        if self.goal_radius == 0.0 and self.heading_tolerance == 0.0:
+            return ends
+        rng = np.random.default_rng(self.seed)
+        angle = rng.uniform(-math.pi, math.pi, N_GOALS - 1)
+        distance = self.goal_radius * np.sqrt(rng.random(N_GOALS - 1))
+        turn = self.heading_tolerance * rng.uniform(-1.0, 1.0, N_GOALS - 1)
+        away = np.column_stack([distance * np.cos(angle), distance * np.sin(angle), turn])
+        return np.vstack([ends, self.goal + away])
 
 
 def check_pose_request(
@@ -140,13 +139,11 @@ def check_pose_request(
         raise RequestError(
             f'algorithm must be one of {", ".join(names)} in a PoseSpace, got {algorithm!r}'
         )
-    begin, end = check_point('start', start, 3), check_point('goal', goal, 3)
-    begin[2], end[2] = wrap(begin[2]), wrap(end[2])
     name = STANDS_FOR.get(algorithm, algorithm)
     return PoseRequest(
         space,
-        begin,
-        end,
+        _check_pose('start', start),
+        _check_pose('goal', goal),
         check_number('goal_radius', goal_radius, 0.0),
         min(check_number('heading_tolerance', heading_tolerance, 0.0), math.pi),
         name,
@@ -155,6 +152,14 @@ def check_pose_request(
         check_number('reverse_penalty', reverse_penalty, 1.0),
         check_seed(seed),
     )
+
+
+def _check_pose(name: str, pose: ArrayLike) -> Floats:
+    """Return ``pose`` (3,) with its yaw in [-pi, pi), or raise RequestError."""
+    array = check_point(name, pose, 3)
+    if not -math.pi <= array[2] < math.pi:
+        array[2] = wrap(array[2])
+    return array
 
 
 def refuse_options(**options: Any) -> None:

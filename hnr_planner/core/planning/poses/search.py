@@ -7,17 +7,18 @@ from typing import Any
 from hnr_planner.core.checks import Floats
 from hnr_planner.core.kernels.streams import Stream
 from hnr_planner.core.planning.planner import with_capacity
+from hnr_planner.core.planning.poses.attempt import ADDED_AT_FIRST
 from hnr_planner.core.planning.poses.connections import empty_connections, N_MOTIONS
+from hnr_planner.core.planning.poses.extensions import N_NEAREST
+from hnr_planner.core.planning.poses.found_path import joined_path
 from hnr_planner.core.planning.poses.guide import point_of_guide
 from hnr_planner.core.planning.poses.steps import N_STROKES
 from hnr_planner.core.planning.poses.trees import (
     grow,
-    N_NEAREST,
     PoseProblem,
     PoseTrees,
     Proposals,
 )
-from hnr_planner.core.spaces.poses.motion import orbit_poses
 from hnr_planner.core.trees import NONE
 import numpy as np
 from numpy.typing import NDArray
@@ -74,22 +75,26 @@ class PoseSearch:
     _joined: tuple[int, int, int] = field(init=False, default=(NONE, NONE, NONE))
 
     def __post_init__(self) -> None:
-        self._size, guide = len(self.roots), self.problem.guide
+        self._size = len(self.roots)
         self._trees = PoseTrees(
-            np.zeros((FIRST_ROWS, 3)),
-            np.zeros((FIRST_ROWS, 3)),
-            np.full(FIRST_ROWS, NONE),
-            np.zeros(FIRST_ROWS, dtype=np.int64),
+            np.empty((FIRST_ROWS, 3)),
+            np.empty((FIRST_ROWS, 3)),
+            np.empty(FIRST_ROWS, dtype=np.int64),
+            np.empty(FIRST_ROWS, dtype=np.int64),
             empty_connections(),
-            np.zeros(N_NEAREST, dtype=np.int64),
-            np.zeros(N_NEAREST),
-            np.zeros((3, 3)),
-            np.array([0.0, guide[-1, 2] if len(guide) else 0.0]),
-            np.full(2, AHEAD * self.problem.space.stride),
+            np.empty(N_NEAREST, dtype=np.int64),
+            np.empty(N_NEAREST),
+            np.empty((3, 3)),
+            np.empty(2),
+            np.empty(2),
         )
         self._reserve(self._size)
-        self._trees.poses[: self._size] = self.roots
-        self._trees.owners[1:][: len(self.roots) - 1] = 1
+        trees = self._trees
+        trees.poses[: self._size] = self.roots
+        trees.parents[: self._size] = NONE
+        trees.owners[: self._size] = 1
+        trees.owners[0] = 0
+        self._begin_guide()
 
     @property
     def samples(self) -> Floats:
@@ -124,12 +129,18 @@ class PoseSearch:
         stuck = point_of_guide(self.problem.guide, float(self._trees.progress.mean()))
         guide = self.other_guide(turn, stuck)
         self.problem = self.problem._replace(guide=guide)
-        self._trees.progress[:] = 0.0, guide[-1, 2] if len(guide) else 0.0
-        self._trees.ahead[:] = AHEAD * self.problem.space.stride
+        self._begin_guide()
+
+    def _begin_guide(self) -> None:
+        """Begin to follow the guide of the problem, from its ends."""
+        guide, trees = self.problem.guide, self._trees
+        trees.progress[0] = 0.0
+        trees.progress[1] = guide[-1, 2] if len(guide) else 0.0
+        trees.ahead[:] = AHEAD * self.problem.space.stride
 
     def _grow(self, n_iterations: int) -> None:
         """Handle at most ``n_iterations`` further transitions, with one guide."""
-        self._reserve(self._size + N_ADDED * n_iterations + 1)
+        self._reserve(self._size + ADDED_AT_FIRST + N_ADDED * n_iterations + 1)
         self._size, taken, *joined = grow(
             self.problem,
             self.proposals,
@@ -150,27 +161,7 @@ class PoseSearch:
 
         It has at least one motion, of the zero twist where the goal is the start.
         """
-        first, last, k = self._joined
-        trees = self._trees
-        ahead, back = self._to_root(first)[::-1], self._to_root(last)
-        n = trees.found.sizes[k]
-        middle = trees.found.twists[k, :n]
-        # The motions of the goal's tree lead away from the goal: they are driven back.
-        twists = np.concatenate([trees.twists[ahead[1:]], middle, -trees.twists[back[:-1]]])
-        poses = [*trees.poses[ahead]]
-        for twist in middle[:-1]:
-            poses.append(after(poses[-1], twist))
-        if n > 0 or len(twists) == 0:
-            poses.append(trees.poses[back[0]])
-        poses += [*trees.poses[back[1:]]]
-        return np.array(poses), twists if len(twists) else np.zeros((1, 3))
-
-    def _to_root(self, row: int) -> list[int]:
-        """Return the rows from a vertex to the root of its tree."""
-        rows = [row]
-        while self._trees.parents[rows[-1]] != NONE:
-            rows.append(int(self._trees.parents[rows[-1]]))
-        return rows
+        return joined_path(self._trees, *self._joined)
 
     def _reserve(self, rows: int) -> None:
         """Make room for a number of vertices."""
@@ -180,12 +171,4 @@ class PoseSearch:
             name: with_capacity(getattr(self._trees, name), rows)
             for name in ('poses', 'twists', 'parents', 'owners')
         }
-        size = self._size
-        grown['parents'][size:] = NONE
         self._trees = self._trees._replace(**grown)
-
-
-def after(pose: Floats, twist: Floats) -> Floats:
-    """Return the pose (3,) after a twist (3,) was held for one unit of time, kernel frame."""
-    reached: Floats = orbit_poses(pose, twist, np.ones(1))[0]
-    return reached

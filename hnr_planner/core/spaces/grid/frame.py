@@ -8,7 +8,7 @@ from typing import ClassVar
 
 from hnr_planner.core.checks import check_real, Floats
 from hnr_planner.core.errors import SpaceError
-from hnr_planner.core.kernels.kernel import kernel
+from hnr_planner.core.kernels.kernel import inlined, kernel
 import numpy as np
 
 #: Coordinates must resolve this fraction of a cell to distinguish free cells from blocked ones.
@@ -145,9 +145,9 @@ def _to_cells(points, x, y, cos, sin, resolution, rim):
     """
     cells = np.empty_like(points)
     for k in range(len(points)):
-        dx, dy = points[k, 0] - x, points[k, 1] - y
-        cells[k, 0] = (dx * cos + dy * sin) / resolution + rim
-        cells[k, 1] = (dy * cos - dx * sin) / resolution + rim
+        cells[k, 0], cells[k, 1] = cell_of(
+            points[k, 0], points[k, 1], x, y, cos, sin, resolution, rim
+        )
     return cells
 
 
@@ -156,7 +156,21 @@ def _from_cells(cells, x, y, cos, sin, resolution, rim):
     """Return the points (k, 2) [m] at ``cells`` (k, 2) [cells]: the inverse of ``_to_cells``."""
     points = np.empty_like(cells)
     for k in range(len(cells)):
-        dx, dy = (cells[k, 0] - rim) * resolution, (cells[k, 1] - rim) * resolution
-        points[k, 0] = dx * cos - dy * sin + x
-        points[k, 1] = dx * sin + dy * cos + y
+        points[k, 0], points[k, 1] = point_of(
+            cells[k, 0], cells[k, 1], x, y, cos, sin, resolution, rim
+        )
     return points
+
+
+@inlined
+def cell_of(px, py, x, y, cos, sin, resolution, rim):
+    """Return the point (px, py) [m] in the grid's frame at (x, y), plus ``rim`` [cells]."""
+    dx, dy = px - x, py - y
+    return (dx * cos + dy * sin) / resolution + rim, (dy * cos - dx * sin) / resolution + rim
+
+
+@inlined
+def point_of(cx, cy, x, y, cos, sin, resolution, rim):
+    """Return the point [m] at (cx, cy) [cells]: the inverse of ``cell_of``."""
+    dx, dy = (cx - rim) * resolution, (cy - rim) * resolution
+    return dx * cos - dy * sin + x, dx * sin + dy * cos + y

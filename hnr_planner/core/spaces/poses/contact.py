@@ -39,7 +39,9 @@ TRAILS = 1e-12
 
 
 @kernel
-def first_contact(free_distance, corner_distance, edges, x, y, yaw, vx, vy, omega, horizon):
+def first_contact(
+    free_distance, corner_distance, edges, circle, x, y, yaw, vx, vy, omega, horizon
+):
     """
     Return the time of the first contact of a footprint that moves along a twist; inf for none.
 
@@ -51,6 +53,8 @@ def first_contact(free_distance, corner_distance, edges, x, y, yaw, vx, vy, omeg
         Chebyshev distance from each grid point to the nearest corner of the blocked cells.
     edges : (n, 6)
         Sides of the footprint (``Footprint``).
+    circle : (3,)
+        Circle around the footprint (``Footprint``).
     x, y, yaw : float
         The pose at time 0, which has to be free.
     vx, vy, omega : float
@@ -63,6 +67,11 @@ def first_contact(free_distance, corner_distance, edges, x, y, yaw, vx, vy, omeg
     if abs(omega) * (rows + columns) * (rows + columns) <= STRAIGHT * math.hypot(vx, vy):
         omega = 0.0
     end = min(horizon, 2.0 * math.pi / abs(omega)) if omega != 0.0 else horizon
+    begin = _free_time(free_distance, circle, x, y, yaw, vx, vy, omega, end)
+    if begin >= end:
+        return math.inf
+    x, y, yaw = moved(x, y, yaw, vx, vy, omega, begin)
+    latest, end = end, end - begin
     first, n = math.inf, len(edges)
     cos, sin = math.cos(yaw), math.sin(yaw)
     for k in range(n):
@@ -75,7 +84,9 @@ def first_contact(free_distance, corner_distance, edges, x, y, yaw, vx, vy, omeg
         outwards = max(
             edges[k, 3] * wx - edges[k, 2] * wy, edges[before, 3] * wx - edges[before, 2] * wy
         )
-        if speed == 0.0 or outwards < -TRAILS * speed:
+        # On a line, a vertex that moves along its own side only follows the vertex before it.
+        trails = TRAILS * speed if omega == 0.0 else -TRAILS * speed
+        if speed == 0.0 or outwards <= trails:
             continue
         at_x, at_y = x + cos * bx - sin * by, y + sin * bx + cos * by
         entry = _vertex_contact(
@@ -99,7 +110,29 @@ def first_contact(free_distance, corner_distance, edges, x, y, yaw, vx, vy, omeg
             min(end, first),
         )
         first = min(first, met)
-    return first
+    return min(begin + first, latest) if first < math.inf else math.inf
+
+
+@kernel
+def _free_time(free_distance, circle, x, y, yaw, vx, vy, omega, end):
+    """
+    Return a time, up to ``end`` at least, before which the circle around a footprint is free.
+
+    The circle's centre is followed in steps within the free squares around it.
+    """
+    wx, wy = vx - omega * circle[1], vy + omega * circle[0]
+    speed = math.hypot(wx, wy)
+    cos, sin = math.cos(yaw), math.sin(yaw)
+    at_x = x + cos * circle[0] - sin * circle[1]
+    at_y = y + sin * circle[0] + cos * circle[1]
+    s = 0.0
+    while s < end:
+        here_x, here_y, _ = moved(at_x, at_y, yaw, wx, wy, omega, s)
+        skip = free_distance[math.floor(here_y), math.floor(here_x)] - 1.0 - circle[2]
+        if skip <= LEAST_SKIP:
+            return s
+        s += skip / speed
+    return s
 
 
 @kernel

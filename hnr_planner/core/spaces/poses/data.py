@@ -138,6 +138,7 @@ def first_contact_of(space, x, y, yaw, vx, vy, omega, horizon):
         space.free_distance,
         space.corner_distance,
         space.edges,
+        space.circle,
         x,
         y,
         yaw,

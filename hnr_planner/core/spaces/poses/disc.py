@@ -9,9 +9,11 @@ no cell is blocked in which the centre can be.
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 import math
 
 from hnr_planner.core.checks import Floats
+from hnr_planner.core.kernels.kernel import inlined
 from hnr_planner.core.spaces.grid.grid_space import GridSpace
 import numpy as np
 
@@ -36,12 +38,28 @@ class Disc:
     centre: Floats
     space: GridSpace
 
+    @cached_property
+    def kernel_centre(self) -> Floats:
+        """Centre (2,) in the robot's frame [cells]."""
+        return self.centre / self.space.scale
+
     def place(self, pose: Floats) -> Floats:
         """Return the disc's centre (2,) [m] at a pose (3,) of the robot, map frame."""
-        cos, sin = math.cos(pose[2]), math.sin(pose[2])
-        turned = np.array([[cos, -sin], [sin, cos]]) @ self.centre
-        placed: Floats = pose[:2] + turned
-        return placed
+        return np.array(disc_place(self.centre, pose))
+
+    def cell_place(self, pose: Floats) -> Floats:
+        """Return the disc's centre (2,) [cells] at a pose (3,) of the robot, kernel frame."""
+        return np.array(disc_place(self.kernel_centre, pose))
+
+
+@inlined
+def disc_place(centre, pose):
+    """Return where the disc's ``centre`` (2,) in the robot's frame is at a pose (3,): (x, y)."""
+    cos, sin = math.cos(pose[2]), math.sin(pose[2])
+    return (
+        pose[0] + cos * centre[0] - sin * centre[1],
+        pose[1] + sin * centre[0] + cos * centre[1],
+    )
 
 
 def largest_disc(grid: GridSpace, footprint: Floats) -> Disc:

@@ -16,10 +16,10 @@ from numpy.typing import NDArray
 
 @inlined
 def wrapped(yaw):
-    """Return the angle in [-pi, pi) that is equal to ``yaw`` up to whole turns [rad]."""
+    """Return the angle in [-pi, pi) equal to ``yaw`` up to whole turns [rad]; nan for none."""
     if -math.pi <= yaw < math.pi:
         return yaw
-    turned = yaw - 2.0 * math.pi * math.floor((yaw + math.pi) / (2.0 * math.pi))
+    turned = yaw - 2.0 * math.pi * np.floor((yaw + math.pi) / (2.0 * math.pi))
     return -math.pi if turned >= math.pi else turned
 
 

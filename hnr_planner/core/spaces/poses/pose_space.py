@@ -1,6 +1,5 @@
 """The poses of a robot that is not round, on an occupancy grid, as a space."""
 
-from collections.abc import Callable
 from functools import cached_property
 import math
 from typing import ClassVar
@@ -13,7 +12,13 @@ from hnr_planner.core.spaces.poses.data import motion_is_free, pose_data, PoseDa
 from hnr_planner.core.spaces.poses.disc import Disc, largest_disc
 from hnr_planner.core.spaces.poses.drive import check_drive, Drive
 from hnr_planner.core.spaces.poses.footprint import check_footprint, prepare_footprint
-from hnr_planner.core.spaces.poses.motion import orbit_poses, wrap
+from hnr_planner.core.spaces.poses.frame import (
+    pose_frame,
+    PoseFrame,
+    poses_from_cells,
+    poses_to_cells,
+)
+from hnr_planner.core.spaces.poses.motion import orbit_poses
 from hnr_planner.core.spaces.primitives import chord_or_empty
 from hnr_planner.core.spaces.space import Chord, Space
 import numpy as np
@@ -138,22 +143,18 @@ class PoseSpace(Space):
         """Mean Chebyshev distance [cells] from a free cell to the nearest blocked cell."""
         return self.grid.typical_clearance
 
+    @cached_property
+    def frame(self) -> PoseFrame:
+        """The frame of the grid as kernels take it."""
+        return pose_frame(self.grid.frame)
+
     def to_kernel(self, points: Floats) -> Floats:
         """Convert poses (..., 3) [m, m, rad] of the map frame to the grid's frame [cells]."""
-        return self._converted(points, self.grid.to_kernel, -self.grid.origin[2])
+        return poses_to_cells(self.frame, _in_rows(points)).reshape(points.shape)
 
     def from_kernel(self, points: Floats) -> Floats:
         """Convert poses (..., 3) of the grid's frame [cells] to the map frame [m, m, rad]."""
-        return self._converted(points, self.grid.from_kernel, self.grid.origin[2])
-
-    @staticmethod
-    def _converted(points: Floats, convert: Callable[[Floats], Floats], turn: float) -> Floats:
-        """Return poses (..., 3) with their positions converted and their yaws turned."""
-        poses = np.empty_like(points, order='C')
-        poses[..., :2] = convert(np.ascontiguousarray(points[..., :2]))
-        with np.errstate(invalid='ignore'):  # what is not finite is not free
-            poses[..., 2] = wrap(points[..., 2] + turn)
-        return poses
+        return poses_from_cells(self.frame, _in_rows(points)).reshape(points.shape)
 
     def twists_to_kernel(self, twists: Floats) -> Floats:
         """Convert twists (..., 3) [m, m, rad] to cells; they turn with the robot, not the map."""
@@ -268,3 +269,8 @@ class PoseSpace(Space):
                 kind = 'occupied' if self.grid.occupied[row, column] else 'unknown'
                 return f'a pose at which the footprint touches the {kind} cell [{row}, {column}]'
         return 'a pose at which the footprint touches a blocked cell'
+
+
+def _in_rows(poses: Floats) -> Floats:
+    """Return poses (..., 3) as (k, 3), in C order, for which kernels are compiled."""
+    return np.ascontiguousarray(poses).reshape(-1, 3)

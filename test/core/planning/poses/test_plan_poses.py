@@ -5,6 +5,8 @@ from test.core.planning.poses.test_words import DRIVES
 from test.core.spaces.poses.robots import checker, L_SHAPE, RECTANGLE
 
 from hnr_planner.core import GridSpace, plan, PlannerStatus, PoseSpace, RequestError, RRT
+from hnr_planner.core.planning.poses.attempt import ADDED_AT_FIRST
+from hnr_planner.core.planning.poses.search import N_ADDED
 import numpy as np
 import pytest
 
@@ -157,6 +159,31 @@ def test_ends_that_are_not_free_and_places_that_no_disc_reaches_are_named():
     wide = PoseSpace(GridSpace.from_blocked(blocked, 0.1), RECTANGLE)
     ends = (1.5, 2.0, 0.0), (6.5, 2.0, 0.0)
     check(wide, plan(wide, *ends, seed=1, **PATIENT), *ends)
+
+
+def test_a_car_gets_round_walls_by_connections_along_the_guide_without_a_search():
+    space = hall(**DRIVES['car'])
+    for seed in range(3):
+        result = plan(space, START, GOAL, seed=seed, simplify=False, **PATIENT)
+        check(space, result)
+        assert result.iterations == 0
+        # Every vertex is an end of a motion that a tree has made, and its root is no other's.
+        assert (result.parents[:2] == -1).all()
+        assert (result.parents[2:] >= 0).all()
+
+
+def test_a_first_attempt_gives_up_on_a_way_of_many_parts():
+    # More bends than the attempt has extensions: what it has found is where the search begins.
+    blocked = np.zeros((20, 1200), dtype=bool)
+    blocked[:11, 30::60] = blocked[9:, 60::60] = True
+    space = PoseSpace(GridSpace.from_blocked(blocked, 0.1), [(0.1, 0.1), (-0.1, 0.0), (0.1, -0.1)])
+    ends = (0.5, 1.0, 0.0), (119.0, 1.0, 0.0)
+    options = {'time_limit': math.inf, 'max_iterations': 1}
+    result = plan(space, *ends, seed=1, **options)
+    assert result.status is PlannerStatus.ITERATION_LIMIT
+    assert len(result.samples) <= 2 + ADDED_AT_FIRST + N_ADDED
+    assert result.samples[result.parents >= 0, 0].max() > 10.0
+    assert space.contains(result.samples).all()
 
 
 def test_a_search_that_is_cut_says_what_cut_it():

@@ -65,6 +65,25 @@ def test_a_footprint_that_touches_a_cell_or_the_edge_is_not_free():
     assert space.contains(away).all()
 
 
+def test_a_pose_with_a_number_that_is_not_finite_is_not_free():
+    space = room()
+    for strange in (np.nan, np.inf, -np.inf, 1e300):
+        poses = np.full((3, 3), 10.0) + np.diag(np.full(3, strange))
+        free = space.contains(poses)
+        assert not free[:2].any()
+        assert free[2] == np.isfinite(strange)
+
+
+def test_a_chord_from_the_middle_of_a_large_room_ends_where_one_from_near_the_wall_does():
+    # From the middle the circle around the robot is followed first, through most of the room.
+    space = room((150, 190), size=(300, 200))
+    for twist in ((1.0, 0.0, 0.0), (1.0, 0.2, 0.004), (0.3, -1.0, -0.01)):
+        middle = np.array((60.0, 150.0, 0.2))
+        upper = space.chord(middle, twist).upper
+        near = space.poses_along(middle, twist, [0.98 * upper])[0]
+        assert space.chord(near, twist).upper == pytest.approx(0.02 * upper, abs=1e-9 * upper)
+
+
 def test_a_robot_slides_along_a_wall_that_it_does_not_touch():
     space = room(*((0, k) for k in range(20)))
     assert space.chord((10.0, 2.0 + 1e-6, 0.0), (1.0, 0.0, 0.0)) == pytest.approx((-9.0, 9.0))
