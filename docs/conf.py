@@ -102,6 +102,7 @@ MOVED = (
     ('', '../msg_docs/', 'ros/'),
     ('', '../benchmarks/results.md', 'benchmark.md'),
     ('', '../docs/', ''),
+    ('', 'docs/', ''),
     ('', '../README.md', 'index.md'),
     ('', '../CONTRIBUTING.md', 'contributing.md'),
     ('', '../config/', 'config/'),

@@ -31,10 +31,9 @@
 #include <ompl/control/planners/rrt/RRT.h>
 #include <ompl/control/planners/sst/SST.h>
 #include <ompl/control/spaces/RealVectorControlSpace.h>
-#include <ompl/util/Console.h>
-#include <ompl/util/RandomNumbers.h>
 
 #include "parabola.hpp"
+#include "seed.hpp"
 #include "validity.hpp"
 
 namespace oc = ompl::control;
@@ -267,12 +266,9 @@ std::string answer(const Grid & grid, const Request & request)
 
 int main(int argc, char ** argv)
 {
-  if (argc != 2) {
-    std::cerr << "usage: control_planners SEED\n";
+  if (!seed_ompl(argc, argv)) {
     return 2;
   }
-  ompl::msg::setLogLevel(ompl::msg::LOG_NONE);
-  ompl::RNG::setSeed(std::stoul(argv[1]));
   std::unique_ptr<Grid> grid;
   for (Request request; std::cin >> request.planner; ) {
     if (request.planner == "grid") {

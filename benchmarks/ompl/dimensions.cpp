@@ -34,10 +34,9 @@
 #include <ompl/geometric/planners/kpiece/LBKPIECE1.h>
 #include <ompl/geometric/planners/rrt/RRTConnect.h>
 #include <ompl/geometric/planners/sbl/SBL.h>
-#include <ompl/util/Console.h>
-#include <ompl/util/RandomNumbers.h>
 
 #include "named_planners.hpp"
+#include "seed.hpp"
 #include "solids.hpp"
 
 namespace ob = ompl::base;
@@ -224,12 +223,9 @@ private:
 
 int main(int argc, char ** argv)
 {
-  if (argc != 2) {
-    std::cerr << "usage: dimensions SEED\n";
+  if (!seed_ompl(argc, argv)) {
     return 2;
   }
-  ompl::msg::setLogLevel(ompl::msg::LOG_NONE);
-  ompl::RNG::setSeed(std::stoul(argv[1]));
   std::unique_ptr<Course> course;
   for (std::string command; std::cin >> command; ) {
     if (command == "solids") {

@@ -31,11 +31,10 @@
 #include <ompl/geometric/planners/rrt/RRTConnect.h>
 #include <ompl/geometric/planners/rrt/RRTstar.h>
 #include <ompl/geometric/planners/sbl/SBL.h>
-#include <ompl/util/Console.h>
-#include <ompl/util/RandomNumbers.h>
 
 #include "grid.hpp"
 #include "named_planners.hpp"
+#include "seed.hpp"
 #include "validity.hpp"
 
 namespace og = ompl::geometric;
@@ -140,12 +139,9 @@ private:
 
 int main(int argc, char ** argv)
 {
-  if (argc != 2) {
-    std::cerr << "usage: planners SEED\n";
+  if (!seed_ompl(argc, argv)) {
     return 2;
   }
-  ompl::msg::setLogLevel(ompl::msg::LOG_NONE);
-  ompl::RNG::setSeed(std::stoul(argv[1]));
   std::unique_ptr<Course> course;
   for (Request request; std::cin >> request.planner; ) {
     if (request.planner == "grid") {

@@ -30,12 +30,11 @@
 #include <ompl/geometric/planners/rrt/BiTRRT.h>
 #include <ompl/geometric/planners/rrt/RRT.h>
 #include <ompl/geometric/planners/rrt/RRTConnect.h>
-#include <ompl/util/Console.h>
-#include <ompl/util/RandomNumbers.h>
 
 #include "footprint.hpp"
 #include "grid.hpp"
 #include "named_planners.hpp"
+#include "seed.hpp"
 
 namespace ob = ompl::base;
 namespace og = ompl::geometric;
@@ -137,12 +136,9 @@ std::unique_ptr<Course> read_course(std::istream & stream)
 
 int main(int argc, char ** argv)
 {
-  if (argc != 2) {
-    std::cerr << "usage: pose_planners SEED\n";
+  if (!seed_ompl(argc, argv)) {
     return 2;
   }
-  ompl::msg::setLogLevel(ompl::msg::LOG_NONE);
-  ompl::RNG::setSeed(std::stoul(argv[1]));
   std::unique_ptr<Course> course;
   for (std::string command; std::cin >> command; ) {
     if (command == "grid") {

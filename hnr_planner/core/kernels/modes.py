@@ -30,7 +30,12 @@ VARIABLE = 'HNR_PLANNER_KERNELS'
 
 
 class Mode(Enum):
-    """What a call of a kernel without loaded machine code does; see this module's docstring."""
+    """
+    How a kernel runs that Python calls and that has no machine code loaded.
+
+    AUTO: interpreted, unless the cache has its machine code. COMPILED: once its machine code is
+    loaded or compiled. INTERPRETED: interpreted, whatever the cache has.
+    """
 
     AUTO = 'auto'
     COMPILED = 'compiled'
@@ -114,7 +119,7 @@ def _run(
     *arguments: Arguments.args,
     **options: Arguments.kwargs,
 ) -> Returned:
-    """Call a function in a mode, and return what it returns."""
+    """Call a function with ``wanted`` as the mode of this thread; return what it returns."""
     with mode_of_thread(wanted):
         return function(*arguments, **options)
 
