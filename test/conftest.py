@@ -33,8 +33,8 @@ os.environ.setdefault('OPENBLAS_NUM_THREADS', '1')
 # No test talks to another machine.
 os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'LOCALHOST'
 
-#: Folders and files that take longest, so that no worker has one of them left at the end; of these
-#: first the interpreted ones, which run while machine code for the others is being made.
+#: Folders and files that take longest, so that no worker has one of them left at the end; before
+#: these, what runs while machine code for the others is being made.
 FIRST = (
     'test/laws/test_space_laws.py',
     'test/laws/test_primitive_laws.py',
@@ -44,9 +44,9 @@ FIRST = (
     'test/core/spaces/test_beyond.py',
     'test/core/spaces/test_piece_tree.py',
     'test/core/spaces/test_sheared.py',
+    'test/core/kernels/test_tiers.py',
     'test/experiments/test_experiments.py',
     'test/core/sampling/test_walk_laws.py',
-    'test/core/kernels/test_tiers.py',
     'test/cli/test_pages.py',
     'test/cli/test_demo.py',
     'test/core/planning/',
@@ -60,6 +60,8 @@ FIRST = (
 #: Folders whose tests all run in one worker, since they share kernels and results of computations
 #: that nobody else needs.
 TOGETHER = ('test/laws/', 'test/core/theory/')
+#: Files whose tests compile into caches of their own.
+APART = ('test/core/kernels/test_tiers.py',)
 #: New objects after which Python looks for garbage: the compiler makes many, and few are garbage.
 GARBAGE_EVERY = 50_000
 WARM_UP = 'from hnr_planner.core import warm_up; warm_up()'
@@ -109,14 +111,9 @@ def pytest_collection_finish() -> None:
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_runtest_setup(item: pytest.Item) -> None:
-    """
-    Set what a kernel without machine code does when called; wait for what most tests need.
-
-    Interpreted tests begin without it, and so do tests whose kernels are their own.
-    """
-    is_marked = item.get_closest_marker('interpreted') is not None
-    is_interpreted = is_marked and MARKS_COUNT
-    if not (is_interpreted or (is_marked and item.nodeid.startswith(TOGETHER))):
+    """Wait for what most tests need; set what a kernel without machine code does when called."""
+    is_interpreted = MARKS_COUNT and item.get_closest_marker('interpreted') is not None
+    if not (is_interpreted or item.nodeid.startswith(APART)):
         _load_machine_code()
     modes.set_mode('interpreted' if is_interpreted else MODE)
 

@@ -9,6 +9,7 @@ from test.laws.test_space_laws import random_points, rounding, size, tolerance
 from typing import NamedTuple
 
 from hnr_planner.core.kernels.kernel import interpreted, kernel
+from hnr_planner.core.kernels.modes import Mode, mode_of_thread
 from hnr_planner.core.spaces.primitives import (
     chord_or_empty,
     first_entry,
@@ -117,7 +118,8 @@ def test_a_line_leaves_where_it_would_have_left_from_anywhere_before(space, rng)
 @pytest.mark.sweep
 def test_interpreted_and_compiled_answer_alike(space, rng):
     for (point, direction), _ in zip(lines(space, rng), range(30), strict=False):
-        compiled = line(space.compiled, point, direction, 0.0)
+        with mode_of_thread(Mode.COMPILED):
+            compiled = line(space.compiled, point, direction, 0.0)
         with np.errstate(divide='ignore', invalid='ignore', over='ignore'):
             plain = interpreted(line)(space.compiled, point, direction, 0.0)
         assert compiled == plain

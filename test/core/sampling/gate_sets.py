@@ -25,6 +25,7 @@ from hnr_planner.core import (
     UnionSpace,
 )
 import numpy as np
+import pytest
 from shapely import Polygon
 
 
@@ -126,3 +127,10 @@ SETS = {
     'stone, 3-D': stone_without_its_core,
     'box without balls, 10-D': box_without_balls,
 }
+#: Sets whose walks would be compiled for them alone: what is tested in them belongs to the sweeps.
+FURTHER = ('hall and dome', 'court with pillars', 'banana, 3-D', 'stone, 3-D')
+
+
+def marked(name: str, *values: object) -> object:
+    """Return a parameter that belongs to the sweeps if its set does."""
+    return pytest.param(name, *values, marks=[pytest.mark.sweep] * (name in FURTHER))

@@ -1,6 +1,6 @@
 """The gate catches walks that are wrong in known ways, and passes the right one."""
 
-from test.core.sampling.gate_sets import hall_and_dome, SETS, u_shape
+from test.core.sampling.gate_sets import hall_and_dome, marked, SETS, u_shape
 from test.sampling_gate import (
     ALPHA,
     ball_step,
@@ -138,7 +138,7 @@ def of_the_law(walk, region):
     }
 
 
-@pytest.mark.parametrize('name', SETS)
+@pytest.mark.parametrize('name', [*map(marked, SETS)])
 def test_the_right_walk_passes(name):
     gate_set = SETS[name]()
     found = of_one_step(right, gate_set) | of_the_law(right, gate_set.region)
@@ -164,7 +164,7 @@ def test_what_is_wrong_in_the_plane_is_caught(walk, caught_by):
     assert all(found[test] < ALPHA for test in caught_by), found
 
 
-@pytest.mark.parametrize('name', ['stone, 3-D', 'box without balls, 10-D'])
+@pytest.mark.parametrize('name', [*map(marked, ['stone, 3-D', 'box without balls, 10-D'])])
 @pytest.mark.parametrize(
     ('walk', 'test'),
     [

@@ -5,7 +5,7 @@ Every p-value is compared with ALPHA; the seeds are fixed.
 """
 
 from test.core.sampling.chain_steps import step_of
-from test.core.sampling.gate_sets import GateSet, SETS
+from test.core.sampling.gate_sets import GateSet, marked, SETS
 from test.sampling_gate import (
     ALPHA,
     ball_step,
@@ -27,15 +27,6 @@ from scipy import stats
 
 N_COORDINATE = 100_000
 N_CHAINS, N_STEPS = 2_000, 200
-
-#: Sets whose walks would be compiled for them alone.
-FURTHER = ('hall and dome', 'court with pillars', 'banana, 3-D', 'stone, 3-D')
-
-
-def marked(name: str, *values: object) -> object:
-    """Return a parameter that belongs to the sweeps if its set does."""
-    return pytest.param(name, *values, marks=[pytest.mark.sweep] * (name in FURTHER))
-
 
 EACH_WALK = pytest.mark.parametrize('walk', WALKS)
 ONE_STEP = pytest.mark.parametrize(
