@@ -25,7 +25,7 @@ MOST_SAMPLES = 60_000
 #: Sentence about each planner, and about what else may have made the path of auto.
 ABOUT = {entry.name: f'{entry.summary[:1].upper()}{entry.summary[1:]}.' for entry in PLANNERS} | {
     'polyanya': 'The shortest path. Found by auto, the samples are those of the search before it.',
-    'flood_fill': 'The path of a flood fill; the samples are those of the search before it.',
+    'flood_fill': 'The path of a flood fill; the samples are those of the trees beside it.',
 }
 
 

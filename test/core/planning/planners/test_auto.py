@@ -7,7 +7,7 @@ from typing import Any
 from hnr_planner.core import GridSpace, plan, PlannerStatus, PlanResult
 from hnr_planner.core.kernels.streams import stream
 from hnr_planner.core.planning.planner import make_problem
-from hnr_planner.core.planning.planners.auto import Auto, FILL_AFTER
+from hnr_planner.core.planning.planners.auto import Auto, ROUND
 from hnr_planner.core.planning.planners.hit_and_run_connect import HitAndRunConnect
 import numpy as np
 from numpy.typing import NDArray
@@ -54,7 +54,7 @@ def test_a_long_strip_with_a_narrow_end_is_solved(seed: int):
     assert result.status is PlannerStatus.SOLVED
     assert path_collisions(result.path, blocked, 0.05) == []
     if result.planner == 'flood_fill':
-        assert result.iterations > FILL_AFTER
+        assert result.iterations > ROUND
         assert len(result.samples) == 2 + result.iterations  # those of the search are kept
     again = solve(space, (596.7 * 0.05, 0.085), (24.0, 7.5), seed=seed)
     np.testing.assert_array_equal(result.path, again.path)
@@ -84,7 +84,7 @@ def test_a_region_whose_centre_is_blocked_is_flooded_into():
     assert math.dist(result.path[-1], goal) <= 0.16
 
 
-@pytest.mark.parametrize('batch', [7, FILL_AFTER, 20 * FILL_AFTER])
+@pytest.mark.parametrize('batch', [7, ROUND, 20 * ROUND])
 def test_the_winner_does_not_depend_on_the_size_of_the_batches(batch: int):
     space = GridSpace.from_blocked(maze(40, 2))
     problem = make_problem(space, np.array([1.5, 1.5]), np.array([79.5, 79.5]), 0.0)
@@ -93,7 +93,7 @@ def test_the_winner_does_not_depend_on_the_size_of_the_batches(batch: int):
     for each, n_iterations in ((search, batch), (one_by_one, 1)):
         while not each.solved:
             each.advance(n_iterations)
-    assert FILL_AFTER < search.iterations == one_by_one.iterations
+    assert ROUND < search.iterations == one_by_one.iterations
     assert search.made_by == one_by_one.made_by == 'flood_fill'
     np.testing.assert_array_equal(search.path, one_by_one.path)
     trees.advance(search.iterations)
@@ -108,7 +108,7 @@ def test_noise_is_solved_by_few_steps(seed: int):
     start, goal = space.cell_centres(*cells[[0, -1]].T)
     result = solve(space, start, goal, seed=seed)
     assert result.status is PlannerStatus.SOLVED
-    assert result.iterations <= 2 * FILL_AFTER
+    assert result.iterations <= 2 * ROUND
     assert path_collisions(result.path, blocked, 0.1) == []
 
 
