@@ -24,6 +24,7 @@ from hnr_planner.core.planning.limits import Budget
 from hnr_planner.core.planning.plan import plan
 from hnr_planner.core.planning.planner import make_problem
 from hnr_planner.core.planning.planners.flood_fill import FloodFill
+from hnr_planner.core.planning.poses.guide import detour_guide, guide_in_batches
 from hnr_planner.core.planning.poses.search import POSE_PLANNERS
 from hnr_planner.core.planning.registry import ALGORITHMS
 from hnr_planner.core.sampling.sample import sample
@@ -227,6 +228,11 @@ def find_poses() -> None:
                 time_limit=math.inf,
                 max_iterations=N_ITERATIONS,
             )
+    # Long guides, and those of detours, are searched by kernels of their own.
+    disc, (begin, end) = space.disc, space.to_kernel(result.path[[0, -1]])
+    ends = make_problem(disc.space, disc.place(result.path[0]), disc.place(result.path[-1]), 0.0)
+    guide_in_batches(disc, ends, Budget(math.inf))
+    detour_guide(disc, begin, end, begin[:2], space.data.stride, Budget(math.inf), 0)
     space.clearance(result.path)
     space.is_motion_valid(result.path[0], AHEAD)
     space.chord(result.path[0], AHEAD)

@@ -111,9 +111,12 @@ def _shortest(disc: Disc, begin: Floats, end: Floats, budget: Budget) -> Floats:
     )
     # Most guides are found at once. The slabs are made here too, which takes long interpreted.
     guide = budget.within(lambda: guide_at_once(space.slabs, problem), np.empty((0, 3)))
-    if len(guide) > 0:
-        return guide
-    search = PolyanyaSearch(problem, space)
+    return guide if len(guide) > 0 else guide_in_batches(disc, problem, budget)
+
+
+def guide_in_batches(disc: Disc, problem: Problem, budget: Budget) -> Floats:
+    """Return the guide along the shortest path; (0, 3) where a limit of the budget is met."""
+    search = PolyanyaSearch(problem, disc.space)
     if run(search, budget) is not PlannerStatus.SOLVED:
         return np.empty((0, 3))
     return with_lengths(search.path)

@@ -1,12 +1,13 @@
 """
 Search for a path of poses by one or two trees of motions.
 
-Every transition extends a tree by one of four proposals: towards a pose along the *guide* (a
-shortest path of the disc inside the footprint), towards a uniform pose, by a step of Hit-and-Run
-along a random twist, or by a *shuffle*, strokes back and forth that turn the robot where there is
-little room. An extension towards a pose follows the cheapest connection from
-the nearest vertex, up to the exact contact with an obstacle. Then the new vertex is connected with
-the nearest vertices of the other tree. How often each proposal is made, and whether the goal has a
+Before the first transition the trees are connected along the *guide*, a shortest path of the disc
+inside the footprint, where that is easy (``first_attempt``). Every transition extends a tree by
+one of four proposals: towards a pose along the guide, towards a uniform pose, by a step of
+Hit-and-Run along a random twist, or by a *shuffle*, strokes back and forth that turn the robot
+where there is little room. An extension towards a pose follows the cheapest connection from the
+nearest vertex, up to the exact contact with an obstacle. Then the new vertex is connected with the
+nearest vertices of the other tree. How often each proposal is made, and whether the goal has a
 tree that grows, distinguishes the planners.
 """
 
