@@ -20,8 +20,8 @@ import numpy as np
 import pytest
 
 N = 300
-#: Points along a line; interpreted, most of the time is theirs.
-ALONG = 400 if 'HNR_COMPILE_ALL' in os.environ else 100
+#: Random points, and points along a line; interpreted, most of the time is theirs.
+SCATTERED, ALONG = (6000, 400) if 'HNR_COMPILE_ALL' in os.environ else (1200, 100)
 
 
 class Line(NamedTuple):
@@ -66,7 +66,7 @@ def lines(space, rng):
 
 
 def test_the_closure_holds_every_free_point(space, rng):
-    points = random_points(space, rng, 4 * N)
+    points = random_points(space, rng, SCATTERED)
     assert all(touching(space.compiled, points[space.contains(points)]))
 
 
