@@ -15,10 +15,12 @@ from typing import NamedTuple
 from hnr_planner.core.checks import Floats
 from hnr_planner.core.kernels.kernel import inlined, kernel
 from hnr_planner.core.planning.poses.reeds_shepp import (
+    least_cost,
     N_DUBINS,
     N_FORMULAS,
     N_SYMMETRIES,
     word,
+    WordPrices,
 )
 from hnr_planner.core.spaces.poses.data import first_contact_of
 from hnr_planner.core.spaces.poses.drive import CAR, DIFFERENTIAL
@@ -127,16 +129,27 @@ def connect(space, prices, a, b, driven, found):
     way round, from ``b`` to ``a``: then costs, and what a drive without reverse can do, are those
     of the way back.
     """
+    connect_below(space, prices, a, b, driven, math.inf, found)
+
+
+@kernel
+def connect_below(space, prices, a, b, driven, limit, found):
+    """
+    Write the cheapest connections from ``a`` to ``b`` to ``found``, as ``connect`` does.
+
+    Those that cost ``limit`` [cells] or more may be missing: most are left out before all of their
+    motions are known.
+    """
     for k in range(N_KEPT + 1):
         found.costs[k] = math.inf
     cos, sin = math.cos(a[2]), math.sin(a[2])
     dx, dy, turn = b[0] - a[0], b[1] - a[1], wrapped(b[2] - a[2])
     x, y = cos * dx + sin * dy, cos * dy - sin * dx
     if space.drive == CAR:
-        _connect_car(space, prices, x, y, turn, driven, found)
+        _connect_car(space, prices, x, y, turn, driven, limit, found)
     elif space.drive == DIFFERENTIAL:
         _connect_differential(space, prices, x, y, turn, driven, found)
-        _connect_car(space, prices, x, y, turn, driven, found)
+        _connect_car(space, prices, x, y, turn, driven, limit, found)
     else:
         _connect_omnidirectional(prices, x, y, turn, found)
 
@@ -148,26 +161,40 @@ def arc_curvature(space):
 
 
 @kernel
-def _connect_car(space, prices, x, y, turn, driven, found):
-    """Keep the cheapest words from (0, 0, 0) to (x, y, turn)."""
+def _connect_car(space, prices, x, y, turn, driven, limit, found):
+    """Keep the cheapest words from (0, 0, 0) to (x, y, turn) that cost less than ``limit``."""
     curvature = arc_curvature(space)
     forwards = not space.reverse
     # What is driven ahead on the way back is driven backwards on the way there: a car that is
     # turned round drives it ahead.
     side = driven if forwards else 1.0
+    x, y = side * x * curvature, side * y * curvature
+    cos, sin = math.cos(turn), math.sin(turn)
+    ahead, back = 1.0, prices.reverse_penalty
+    if driven < 0.0 and not forwards:
+        ahead, back = back, ahead
+    word_prices = WordPrices(ahead, back, prices.change * curvature)
     for formula in range(N_DUBINS if forwards else N_FORMULAS):
+        least = least_cost(formula, forwards, word_prices, x, y, turn) / curvature
         for symmetry in range(N_SYMMETRIES):
             if forwards and (symmetry & 5) != 0:
                 continue
             if symmetry >= 4 and formula != 2 and formula != 5 and formula != 6:
                 continue  # the pieces turned round are a word of the same formula
+            most = min(limit, found.costs[N_KEPT - 1])
+            if least >= most:
+                break
             n = word(
                 formula,
                 symmetry,
                 forwards,
-                side * x * curvature,
-                side * y * curvature,
+                x,
+                y,
                 turn,
+                cos,
+                sin,
+                word_prices,
+                most * curvature,
                 found.lengths,
                 found.bends,
             )

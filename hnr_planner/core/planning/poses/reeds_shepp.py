@@ -9,6 +9,7 @@ Dubins ("On curves of minimal length with a constraint on average curvature", 19
 """
 
 import math
+from typing import NamedTuple
 
 from hnr_planner.core.kernels.kernel import kernel
 
@@ -21,25 +22,60 @@ N_SYMMETRIES = 8
 ROUNDING = 1e-12
 
 
+class WordPrices(NamedTuple):
+    """
+    What a unit of length costs ahead and backwards, and what each change between them does.
+
+    Attributes
+    ----------
+    ahead, back, change : float
+        Prices; radius 1.
+
+    """
+
+    ahead: float
+    back: float
+    change: float
+
+
 @kernel
-def word(formula, symmetry, forwards, x, y, yaw, lengths, bends):
+def least_cost(formula, forwards, prices, x, y, yaw):
+    """
+    Return a cost that no word of a formula to (x, y, yaw) is below, whatever its symmetry.
+
+    No word is shorter than the straight way, or turns by less than ``yaw``. All but the first two
+    formulas change direction, unless ``forwards``: a word of theirs in which a piece has the
+    length 0, and which does not, is a word of those two as well.
+    """
+    least = min(prices.ahead, prices.back) * max(math.hypot(x, y), abs(yaw))
+    return least if forwards or formula < 2 else least + prices.change
+
+
+@kernel
+def word(formula, symmetry, forwards, x, y, yaw, cos, sin, prices, limit, lengths, bends):
     """
     Write one word from (0, 0, 0) to (x, y, yaw), radius 1; return its number of pieces.
 
-    The number is 0 where the word does not exist. ``lengths`` (5,) are the signed lengths of the
-    pieces, and ``bends`` (5,) their curvatures: 1 to the left, -1 to the right, 0 straight. With
-    ``forwards`` no length is below 0.
+    The number is 0 where the word does not exist, or is seen to cost more than ``limit`` before
+    all of it is known. ``cos`` and ``sin`` are those of ``yaw`` in [-pi, pi). ``lengths`` (5,) are
+    the signed lengths of the pieces, and ``bends`` (5,) their curvatures: 1 to the left, -1 to the
+    right, 0 straight. With ``forwards`` no length is below 0.
     """
     is_negated, is_mirrored, is_turned = symmetry & 1, symmetry & 2, symmetry & 4
+    ahead, back = prices.ahead, prices.back
     if is_turned:
         # The goal seen backwards: the same pieces in the opposite order lead there.
-        cos, sin = math.cos(yaw), math.sin(yaw)
         x, y = x * cos + y * sin, x * sin - y * cos
     if is_negated:
-        x, yaw = -x, -yaw
+        x, yaw, sin = -x, -yaw, -sin
+        ahead, back = back, ahead
     if is_mirrored:
-        y, yaw = -y, -yaw
-    n = _formula(formula, forwards, x, y, yaw, lengths, bends)
+        y, yaw, sin = -y, -yaw, -sin
+    # A word that costs as much as the limit, but for rounding, is not left out.
+    limit *= 1.0 + ROUNDING
+    if formula > 1 and not forwards:
+        limit -= prices.change
+    n = _formula(formula, forwards, x, y, yaw, cos, sin, ahead, back, limit, lengths, bends)
     if n == 0:
         return 0
     if is_turned:
@@ -55,15 +91,16 @@ def word(formula, symmetry, forwards, x, y, yaw, lengths, bends):
 
 
 @kernel
-def _formula(formula, forwards, x, y, yaw, lengths, bends):
+def _formula(formula, forwards, x, y, yaw, cos, sin, ahead, back, limit, lengths, bends):
     """Write the word of one formula as it stands; return its number of pieces, 0 for none."""
-    cos, sin = math.cos(yaw), math.sin(yaw)
     # Vector between the centres of the first and the last circle, on one side or on both.
     same_x, same_y = x - sin, y - 1.0 + cos
     other_x, other_y = x + sin, y - 1.0 - cos
     same, other = math.hypot(same_x, same_y), math.hypot(other_x, other_y)
     first, last = 0.0, 0.0
     if formula == 0:  # left, straight, left
+        if ahead * (same + abs(yaw)) > limit:
+            return 0
         first = _angle(math.atan2(same_y, same_x), forwards)
         last = _angle(yaw - first, forwards)
         _put(lengths, bends, 0, first, 1.0)
@@ -74,6 +111,8 @@ def _formula(formula, forwards, x, y, yaw, lengths, bends):
         if other < 2.0:
             return 0
         straight = math.sqrt(other * other - 4.0)
+        if ahead * (straight + abs(yaw)) > limit:
+            return 0
         first = _angle(math.atan2(other_y, other_x) + math.atan2(2.0, straight), forwards)
         last = _angle(first - yaw, forwards)
         _put(lengths, bends, 0, first, 1.0)
@@ -84,6 +123,8 @@ def _formula(formula, forwards, x, y, yaw, lengths, bends):
         if same > 4.0:
             return 0
         middle = -2.0 * math.asin(same / 4.0)
+        if (ahead * (2.0 * math.pi + middle) if forwards else -back * middle) > limit:
+            return 0
         first = _angle(math.atan2(same_y, same_x) + middle / 2.0 + math.pi, forwards)
         last = _angle(yaw - first + middle, forwards)
         if forwards:
@@ -97,6 +138,8 @@ def _formula(formula, forwards, x, y, yaw, lengths, bends):
         if rho > 1.0:
             return 0
         middle = math.acos(rho)
+        if (ahead + back) * middle > limit:
+            return 0
         first, last = _outer_arcs(middle, -middle, other_x, other_y, yaw)
         _put(lengths, bends, 0, first, 1.0)
         _put(lengths, bends, 1, middle, -1.0)
@@ -108,6 +151,8 @@ def _formula(formula, forwards, x, y, yaw, lengths, bends):
         if not 0.0 <= rho <= 1.0:
             return 0
         middle = -math.acos(rho)
+        if -2.0 * back * middle > limit:
+            return 0
         first, last = _outer_arcs(middle, middle, other_x, other_y, yaw)
         _put(lengths, bends, 0, first, 1.0)
         _put(lengths, bends, 1, middle, -1.0)
@@ -119,6 +164,8 @@ def _formula(formula, forwards, x, y, yaw, lengths, bends):
         if same < 2.0:
             return 0
         root = math.sqrt(same * same - 4.0)
+        if back * (root - 2.0 - quarter) > limit:
+            return 0
         first = _angle(math.atan2(same_y, same_x) + math.atan2(root, -2.0), False)
         last = _angle(yaw + quarter - first, False)
         _put(lengths, bends, 0, first, 1.0)
@@ -128,6 +175,8 @@ def _formula(formula, forwards, x, y, yaw, lengths, bends):
         return 4 if first >= 0.0 and root >= 2.0 and last <= 0.0 else 0
     if formula == 6:  # left, right backwards by a quarter, straight and right backwards
         if other < 2.0:
+            return 0
+        if back * (other - 2.0 - quarter) > limit:
             return 0
         first = _angle(math.atan2(other_x, -other_y), False)
         last = _angle(first - quarter - yaw, False)
@@ -140,6 +189,8 @@ def _formula(formula, forwards, x, y, yaw, lengths, bends):
     if other < 2.0:
         return 0
     straight = 4.0 - math.sqrt(other * other - 4.0)
+    if straight > 0.0 or -back * (straight + 2.0 * quarter) > limit:
+        return 0
     first = _angle(
         math.atan2(
             (4.0 - straight) * other_x - 2.0 * other_y,
@@ -153,7 +204,7 @@ def _formula(formula, forwards, x, y, yaw, lengths, bends):
     _put(lengths, bends, 2, straight, 0.0)
     _put(lengths, bends, 3, quarter, 1.0)
     _put(lengths, bends, 4, last, -1.0)
-    return 5 if first >= 0.0 and straight <= 0.0 and last >= 0.0 else 0
+    return 5 if first >= 0.0 and last >= 0.0 else 0
 
 
 @kernel

@@ -13,10 +13,11 @@ from hnr_planner.core.kernels.borrowed import borrowed
 from hnr_planner.core.kernels.kernel import kernel
 from hnr_planner.core.kernels.streams import uniform
 from hnr_planner.core.planning.poses.connections import (
-    connect,
+    connect_below,
     connection_is_free,
     cost_of,
     is_seen_blocked,
+    motion_cost,
     N_KEPT,
     N_MOTIONS,
 )
@@ -72,9 +73,12 @@ def shorten_path(space, prices, poses, twists, n, spare_poses, spare_twists, fou
         begin, end = spare_poses[len(twists)], spare_poses[len(twists) - 1]
         _write_pose(poses, twists, i, f, begin)
         _write_pose(poses, twists, j, g, end)
-        connect(space, prices, begin, end, 1.0, found)
+        limit = cost - _cost_of_rest(prices, twists, n, i, f, j, g)
+        if math.hypot(end[0] - begin[0], end[1] - begin[1]) >= limit:
+            continue
+        connect_below(space, prices, begin, end, 1.0, limit, found)
         for k in range(N_KEPT):
-            if found.costs[k] == math.inf or found.costs[k] >= cost:
+            if not found.costs[k] < limit:
                 break
             m = _replaced(poses, twists, n, i, f, j, g, found, k, spare_poses, spare_twists)
             lower = cost_of(prices, spare_twists, m, 1.0)
@@ -90,6 +94,21 @@ def shorten_path(space, prices, poses, twists, n, spare_poses, spare_twists, fou
                         poses[row + 1, c] = spare_poses[row + 1, c]
                 break
     return n
+
+
+@kernel
+def _cost_of_rest(prices, twists, n, i, f, j, g):
+    """
+    Return what a path of n motions costs outside a section, changes at its ends aside.
+
+    The section begins after the share f of motion i, and ends after the share g of motion j.
+    """
+    cost = f * motion_cost(prices, twists[i, 0], twists[i, 1], twists[i, 2], 1.0)
+    cost += (1.0 - g) * motion_cost(prices, twists[j, 0], twists[j, 1], twists[j, 2], 1.0)
+    behind = j + 1
+    return (
+        cost + cost_of(prices, twists, i, 1.0) + cost_of(prices, twists[behind:], n - behind, 1.0)
+    )
 
 
 @kernel

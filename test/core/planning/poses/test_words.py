@@ -11,6 +11,7 @@ from hnr_planner.core.planning.poses.reeds_shepp import (
     N_FORMULAS,
     N_SYMMETRIES,
     word,
+    WordPrices,
 )
 import numpy as np
 import pytest
@@ -49,7 +50,11 @@ def words(goal, forwards):
     for formula in range(N_DUBINS if forwards else N_FORMULAS):
         for symmetry in (0, 2) if forwards else range(N_SYMMETRIES):
             lengths, bends = np.zeros(5), np.zeros(5)
-            n = interpreted(word)(formula, symmetry, forwards, *goal, lengths, bends)
+            turn = np.cos(goal[2]), np.sin(goal[2])
+            prices = WordPrices(1.0, 1.0, 0.0)
+            n = interpreted(word)(
+                formula, symmetry, forwards, *goal, *turn, prices, np.inf, lengths, bends
+            )
             if n:
                 twists = np.column_stack([lengths, np.zeros(5), bends * lengths])[:n]
                 found.append(twists)
@@ -116,3 +121,24 @@ def test_connections_end_at_the_pose_and_are_what_the_drive_can_do(name, way, rn
                 least = np.hypot(*np.transpose(RECTANGLE)).max() / GRID.resolution * (1.0 - 1e-9)
                 turning = vx != 0.0
                 assert (np.abs(vx) >= least * np.abs(omega))[turning].all()
+
+
+@pytest.mark.parametrize('name', DRIVES)
+@pytest.mark.parametrize('way', [1.0, -1.0])
+def test_a_limit_leaves_out_no_connection_that_costs_less(name, way, rng):
+    space = PoseSpace(GRID, RECTANGLE, **DRIVES[name])
+    prices = module.Prices(2.0, 10.0, 3.0)
+    every, some = (interpreted(module.empty_connections)() for _ in range(2))
+    n_compared = 0
+    for scale in np.repeat([1.0, 10.0, 80.0], 5):
+        a = rng.uniform((0, 0, -np.pi), (80, 80, np.pi))
+        b = a + scale * rng.normal(size=3) * (1.0, 1.0, 0.1)
+        interpreted(module.connect)(space.data, prices, a, b, way, every)
+        limit = rng.choice(every.costs[: module.N_KEPT]) * (1.0 + 1e-6)
+        interpreted(module.connect_below)(space.data, prices, a, b, way, limit, some)
+        below = every.costs[: module.N_KEPT] < limit
+        np.testing.assert_array_equal(
+            every.costs[: module.N_KEPT][below], some.costs[: module.N_KEPT][below]
+        )
+        n_compared += below.sum()
+    assert n_compared > 15
