@@ -31,8 +31,9 @@ def as_json(result: PlanResult) -> str:
             'seed': result.seed,
             'iterations': result.iterations,
             'elapsed': result.elapsed,
-            'length': result.length if math.isfinite(result.length) else None,
-            'lower_bound': result.lower_bound if math.isfinite(result.lower_bound) else None,
+            'length': _finite(result.length),
+            'lower_bound': _finite(result.lower_bound),
+            'clear_lower_bound': _finite(result.clear_lower_bound),
             'path': result.path.tolist(),
             **twists,
             'paths': [path.tolist() for path in result.paths],
@@ -40,6 +41,11 @@ def as_json(result: PlanResult) -> str:
             'escape': result.escape,
         }
     )
+
+
+def _finite(number: float) -> float | None:
+    """Return a number, or None where it is infinite, which JSON cannot express."""
+    return number if math.isfinite(number) else None
 
 
 def summary(space: GridSpace | PoseSpace, result: PlanResult) -> str:

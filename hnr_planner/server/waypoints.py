@@ -45,6 +45,7 @@ def joined(results: Sequence[PlanResult]) -> PlanResult:
         twists=None if not twists else np.vstack(twists),
         length=sum(result.length for result in results),
         lower_bound=sum(result.lower_bound for result in results),
+        clear_lower_bound=sum(result.clear_lower_bound for result in results),
         samples=np.vstack([result.samples for result in results]),
         parents=np.concatenate(parents),
         iterations=sum(result.iterations for result in results),

@@ -49,6 +49,7 @@ def led_out(result: PlanResult, start: tuple[float, float], exit_point: Floats) 
         others=tuple(from_start(path) for path in result.others),
         length=result.length + escape,
         lower_bound=result.lower_bound + escape,
+        clear_lower_bound=result.clear_lower_bound + escape,
         first_solution=first,
         escape=escape,
     )

@@ -30,6 +30,7 @@ KEYS = [
     'elapsed',
     'length',
     'lower_bound',
+    'clear_lower_bound',
     'path',
     'paths',
     'goal_offset',

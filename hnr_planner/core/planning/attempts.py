@@ -22,6 +22,9 @@ from hnr_planner.core.planning.request import Request
 from hnr_planner.core.planning.result import FirstSolution, PlannerStatus, PROVED
 from hnr_planner.core.planning.shortest import (
     in_caller_s_frame,
+    KeptClear,
+    lower_bound,
+    NOT_SEARCHED,
     shortest_kept_clear,
     shortest_path,
 )
@@ -63,7 +66,9 @@ class Attempt(NamedTuple):
     lower_bound : float
         Lower bound on the length of free paths from start to goal [m].
     work : Work
-        Work of the search, and of the one for the shortest path where there was one.
+        Work of the search, and of those for shortest paths where there were any.
+    kept_clear : KeptClear
+        Outcome of the search over the cells that keep the clearance.
 
     """
 
@@ -75,6 +80,12 @@ class Attempt(NamedTuple):
     planner: str
     lower_bound: float
     work: Work
+    kept_clear: KeptClear = NOT_SEARCHED
+
+    @property
+    def keeps_clearance(self) -> bool:
+        """Whether the path is the one found over the cells that keep the clearance."""
+        return self.path is self.kept_clear.path
 
 
 def attempt(
@@ -96,28 +107,30 @@ def attempt(
     """
     status, search, path = _search(request, number, budget)
     planner = getattr(search, 'made_by', request.planner.name)
-    bound, work = _lower_bound(request, search), Work.of(search)
+    bound, work = lower_bound(request, search), Work.of(search)
     if status is not PlannerStatus.SOLVED:
         return Attempt(status, search, path, math.inf, None, planner, bound, work)
     first = FirstSolution(working_time() - began, path_length(path), path)
-    candidates = []
+    candidates, kept = [], NOT_SEARCHED
     exact_budget = _budget_of_exact_search(request, budget, optimizing)
     if exact_budget is not None and first.length > PROVED * bound:
         exact, shortest = shortest_path(request, exact_budget)
-        bound, work = _lower_bound(request, exact), work.plus(Work.of(exact))
+        bound, work = lower_bound(request, exact), work.plus(Work.of(exact))
         if shortest is not None:
             moved = _with_cost(request, shortest, exact_budget)
             candidates.append(Attempt(status, search, *moved, first, Polyanya.name, bound, work))
     if exact_budget is not None and request.clearance > 0.0:
-        more, clear = shortest_kept_clear(request, exact_budget)
-        work = work.plus(more)
-        if clear is not None:
-            kept = clear, _cost(request, clear, exact_budget)
-            candidates.append(Attempt(status, search, *kept, first, Polyanya.name, bound, work))
+        kept = shortest_kept_clear(request, exact_budget)
+        work = work.plus(kept.work)
+        if kept.path is not None:
+            cost = _cost(request, kept.path, exact_budget)
+            clear = Attempt(status, search, kept.path, cost, first, Polyanya.name, bound, work)
+            candidates.append(clear)
     if request.clearance > 0.0 or not candidates:
         improved = _improved(request, number, search, path, budget)
         candidates.append(Attempt(status, search, *improved, first, planner, bound, work))
-    return min(candidates, key=lambda candidate: candidate.cost)
+    best = min(candidates, key=lambda candidate: candidate.cost)
+    return best._replace(work=work, kept_clear=kept)
 
 
 def _budget_of_exact_search(
@@ -194,7 +207,7 @@ def optimize(
         number += 1
         idle = 0 if again.cost < (1.0 - LEAST_GAIN) * best.cost else idle + 1
         if again.cost < best.cost:
-            best = again._replace(lower_bound=best.lower_bound)
+            best = again._replace(lower_bound=best.lower_bound, kept_clear=best.kept_clear)
     return best, work
 
 
@@ -278,13 +291,3 @@ def search_until_free(
         if getattr(search, 'taut', False):
             break
     return PlannerStatus.ITERATION_LIMIT, search, None
-
-
-def _lower_bound(request: Request, search: PathSearch) -> float:
-    """
-    Return a lower bound [m] on the length of free paths from start to goal.
-
-    It is the bound of the search where that has one, and at least the straight distance.
-    """
-    bound = getattr(search, 'lower_bound', 0.0) * request.space.scale
-    return max(bound, request.straight_length)

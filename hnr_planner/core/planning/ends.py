@@ -117,6 +117,7 @@ class MovedRequest:
             first_solution=first,
             escape=self.escape,
             lower_bound=result.lower_bound + self.escape,
+            clear_lower_bound=result.clear_lower_bound + self.escape,
         )
 
     def _with_start(self, path: Floats) -> Floats:

@@ -35,7 +35,13 @@ from hnr_planner.core.planning.request import (
     Effort,
     Request,
 )
-from hnr_planner.core.planning.result import FirstSolution, PlannerStatus, PlanResult, proof
+from hnr_planner.core.planning.result import (
+    FirstSolution,
+    PlannerStatus,
+    PlanResult,
+    proof,
+    proof_of_clearance,
+)
 from hnr_planner.core.planning.tiers import with_remark
 from hnr_planner.core.spaces.poses.pose_space import PoseSpace
 from hnr_planner.core.spaces.space import Space
@@ -93,7 +99,8 @@ def plan(
         Distance to obstacles [m] that the path keeps where it can; narrower passages are passed
         in their middle. 0 for the shortest path. It needs ``simplify`` and a space that
         measures the distance to its walls. On a grid, ``auto`` with further searches and
-        ``polyanya`` also search for the shortest path over the cells that keep it everywhere.
+        ``polyanya`` also search for the shortest path over the cells that keep it everywhere, and
+        ``PlanResult.clear_lower_bound`` is a bound on the length of all paths over these cells.
     optimize_for : float
         Seconds of the call, within the time limit, for further searches for a shorter path; they
         end once the path is straight. The clock only cuts: searches are bounded by their number,
@@ -247,6 +254,7 @@ def _result_of_search(
         cut_by_time=budget.cut,
         first_solution=first,
         lower_bound=best.lower_bound,
+        clear_lower_bound=best.kept_clear.lower_bound,
     )
 
 
@@ -293,7 +301,9 @@ def _message(request: Request, best: Attempt, iterations: int, began: float) -> 
         found = f'path of {length:.6g} m with {len(best.path)} vertices'
         as_found = request.simplify and not best.search.taut and best.path is best.first.path
         nothing = ', of which no shortcut is free' if as_found and len(best.path) > 2 else ''
-        proved = proof(length, best.lower_bound, request.straight_length)
+        proved = proof(length, best.lower_bound, request.straight_length) + proof_of_clearance(
+            request.clearance, best.keeps_clearance, length, best.kept_clear.lower_bound
+        )
         return f'{found} after {iterations} transitions{nothing}{proved}'
     seconds = working_time() - began
     return f'{best.status.value} ({iterations} transitions, {seconds:.3g} s)'

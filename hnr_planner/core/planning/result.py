@@ -44,6 +44,34 @@ def proof(length: float, lower_bound: float, straight_length: float) -> str:
     return f', at most {100.0 * (ratio - 1.0):.2g} % longer than the shortest'
 
 
+def proof_of_clearance(clearance: float, keeps: bool, length: float, lower_bound: float) -> str:
+    """
+    Return what is proved of the paths that keep a clearance, as part of a message.
+
+    Parameters
+    ----------
+    clearance : float
+        The clearance requested [m].
+    keeps : bool
+        Whether the path was found as the shortest over the cells that keep it.
+    length : float
+        Length of the path [m].
+    lower_bound : float
+        Lower bound on the length of the paths over these cells [m]; inf where there is none, 0
+        where none were searched for.
+
+    """
+    cells = f'over cells that keep {clearance:g} m'
+    if lower_bound == 0.0:
+        return ''
+    if lower_bound == math.inf:
+        return f', no path {cells} exists'
+    if length > PROVED * lower_bound:
+        longer = 100.0 * (length / lower_bound - 1.0)
+        return f', at most {longer:.2g} % longer than the shortest {cells}'
+    return f', the shortest {cells}' if keeps else f', no longer than the shortest {cells}'
+
+
 class FirstSolution(NamedTuple):
     """
     The first path that was found, before it was shortened.
@@ -143,6 +171,9 @@ class PlanResult(SearchResult):
         It equals the length of the path, up to margins at corners, where that is proved to be the
         shortest; it is inf where no path exists. Where an end was moved, it is a bound on paths
         with the ends as moved, the segment from the start to free space included.
+    clear_lower_bound : float
+        The same for paths over cells of a grid that keep the requested clearance everywhere [m]:
+        inf where no such cells connect the ends; 0 where these were not searched.
     escape : float
         Length of the first segment of the path [m] where it leads from a start that is not free
         to free space (``start_escape``); else 0.
@@ -156,6 +187,7 @@ class PlanResult(SearchResult):
     goal_offset: float = 0.0
     escape: float = 0.0
     lower_bound: float = 0.0
+    clear_lower_bound: float = 0.0
     twists: Floats | None = None
 
     def poses(self, spacing: float) -> Floats:

@@ -1,7 +1,8 @@
 """Exact searches for a request on a grid: the shortest path, and that which keeps a clearance."""
 
 from dataclasses import replace
-from typing import Any
+import math
+from typing import Any, NamedTuple
 
 from hnr_planner.core.checks import Floats
 from hnr_planner.core.planning.limits import Budget, run
@@ -48,23 +49,52 @@ def shortest_path(request: Request, budget: Budget) -> tuple[PathSearch, Floats 
     return search, budget.within(free_path, None)
 
 
-def shortest_kept_clear(request: Request, budget: Budget) -> tuple[Work, Floats | None]:
+def lower_bound(request: Request, search: PathSearch) -> float:
     """
-    Search a grid for the shortest path over cells that keep the clearance of a request.
+    Return a lower bound [m] on the length of free paths from start to goal.
 
-    Return the work, and the path (m, 2), caller's frame. The path is None where no such cells
-    connect start and goal, or a limit is met first.
+    It is the bound of the search where that has one, and at least the straight distance.
     """
+    bound = getattr(search, 'lower_bound', 0.0) * request.space.scale
+    return max(bound, request.straight_length)
+
+
+class KeptClear(NamedTuple):
+    """
+    Outcome of a search over the cells that keep a clearance.
+
+    Attributes
+    ----------
+    work : Work
+        Work of the search.
+    path : (m, 2) or None
+        The shortest path, caller's frame; None where a limit was met first or there is none.
+    lower_bound : float
+        Lower bound on the length of paths over these cells [m]; inf where they connect no path.
+
+    """
+
+    work: Work
+    path: Floats | None
+    lower_bound: float
+
+
+#: The outcome where no search was made.
+NOT_SEARCHED = KeptClear(NOTHING, None, 0.0)
+
+
+def shortest_kept_clear(request: Request, budget: Budget) -> KeptClear:
+    """Search a grid for the shortest path over cells that keep the clearance of a request."""
     if budget.stop() is not None:
-        return NOTHING, None
+        return NOT_SEARCHED
     space: Any = request.space
     clear = kept_clear(space, request.clearance)
     problem = make_problem(clear, request.start, request.goal, request.goal_radius)
     kept = replace(request, space=clear, problem=problem)
     status, _ = outcome_without_search(kept) or (None, '')
-    if status is PlannerStatus.SOLVED and request.goal_radius == 0.0:
-        return NOTHING, np.array((request.start, request.goal))
+    if status is PlannerStatus.SOLVED:  # by the segment: no start in the goal region is searched
+        return KeptClear(NOTHING, np.array((request.start, request.goal)), request.straight_length)
     if status is not None:
-        return NOTHING, None
+        return KeptClear(NOTHING, None, math.inf)
     search, path = shortest_path(kept, budget)
-    return Work.of(search), path
+    return KeptClear(Work.of(search), path, lower_bound(kept, search))

@@ -5,14 +5,17 @@ from itertools import pairwise
 import math
 from test.brute_force import path_collisions
 from test.laws import maps
+from test.visibility_graph import Cells, SCALE, shortest_length
 import threading
 
 from hnr_planner import core
-from hnr_planner.core import ALGORITHMS, GridSpace, PlannerStatus, RequestError
+from hnr_planner.core import ALGORITHMS, GridSpace, PlannerStatus, PlanResult, RequestError
+from hnr_planner.core.planning import shortest
 from hnr_planner.core.planning.homology import islands_at, signature
 from hnr_planner.core.planning.limits import Budget
 from hnr_planner.core.planning.postprocessing import clearance as module
 from hnr_planner.core.planning.postprocessing.clearance import increase_clearance, path_cost
+from hnr_planner.core.planning.request import check_request
 from hnr_planner.core.spaces.grid.kept_clear import kept_clear
 from hypothesis import given, settings, strategies
 import numpy as np
@@ -280,6 +283,80 @@ def test_the_exact_search_takes_the_wide_passage_instead_of_the_narrow_one(argum
     assert path_collisions(wide.path, occupied, 1.0) == []
     assert wall_distances(points_on(wide.path, 0.25), occupied).min() >= 3.5
     assert wide.lower_bound == narrow.lower_bound
+    around = shortest_length(~cells_that_keep(space, occupied, 4.0), (22, 74), (138, 74))
+    assert wide.clear_lower_bound == pytest.approx(around, abs=1e-6)
+    assert 'the shortest over cells that keep 4 m' in wide.message
+
+
+def cells_that_keep(space: GridSpace, occupied: NDArray[np.bool_], clearance: float) -> Cells:
+    """Return which free cells have no point nearer than a clearance to an occupied cell."""
+    keep = ~space.blocked
+    for row, column in np.argwhere(keep):
+        across = np.maximum(np.abs(np.argwhere(occupied) - (row, column)) - 1, 0)
+        nearest = np.hypot(*across.T).min(initial=math.inf)
+        keep[row, column] = nearest * space.resolution >= clearance - 1e-9
+    return keep
+
+
+def check_bound(seed: int) -> PlanResult:
+    """Compare the bound on paths that keep a clearance with a solver in whole numbers."""
+    rng = np.random.default_rng(seed)
+    occupied = np.zeros((20, 24), dtype=bool)
+    for row, column in rng.integers((0, 2), (17, 22), size=(6, 2)).tolist():
+        height, width = rng.integers(1, (9, 3)).tolist()
+        occupied[row:, column:][:height, :width] = True
+    clearance, radius = rng.choice([0.4, 0.5, 0.8, 1.0, 1.2]), rng.choice([0.0, 0.5])
+    space = GridSpace.from_blocked(occupied, 0.5, robot_radius=radius)
+    keep = cells_that_keep(space, occupied, clearance)
+    free = np.argwhere(space.largest_component() & (keep | (seed % 4 == 0)))
+    free = free[np.argsort(free[:, 1], kind='stable')]  # from left to right
+    (row, column), (to_row, to_column) = free[rng.integers(20, size=2) * (1, -1)].tolist()
+    ends = space.cell_centres([row, to_row], [column, to_column])
+    result = plan(space, *ends, clearance=clearance, algorithm='polyanya', seed=seed)
+    assert path_collisions(result.path, space.blocked, 0.5) == []
+    if result.clear_lower_bound == 0.0:  # the start sees the goal: nothing was searched
+        assert result.iterations == 0
+        return result
+    expected = math.inf
+    if keep[row, column] and keep[to_row, to_column]:
+        centres = [(SCALE * x + 2, SCALE * y + 2) for x, y in ((column, row), (to_column, to_row))]
+        expected = 0.5 * shortest_length(~keep, *centres)
+    assert result.clear_lower_bound == pytest.approx(expected, abs=1e-6), seed
+    ratio, where = result.length / expected, f' over cells that keep {clearance:g} m'
+    assert (f', no path{where} exists' in result.message) == (expected == math.inf)
+    assert (f' % longer than the shortest{where}' in result.message) == (ratio > 1.0 + 1e-6)
+    if f', the shortest{where}' in result.message:
+        assert path_collisions(result.path, ~keep, 0.5) == []
+        assert ratio == pytest.approx(1.0, abs=1e-6)
+    return result
+
+
+def test_the_bound_on_paths_that_keep_a_clearance_is_their_least_length():
+    results = [check_bound(seed) for seed in range(150)]
+    words = [', no path over', ', the shortest over', ', no longer than']
+    counts = [sum(each in result.message for result in results) for each in words]
+    assert min(counts) >= 3, counts
+
+
+@pytest.mark.parametrize('wrong', [-0.3, 0.3])
+def test_a_mutant_with_other_cells_is_caught(wrong: float, monkeypatch: pytest.MonkeyPatch):
+    """The bound of paths that keep less, or more, is not that of paths that keep the clearance."""
+    monkeypatch.setattr(shortest, 'kept_clear', lambda space, c: kept_clear(space, c + wrong))
+    with pytest.raises(AssertionError):
+        test_the_bound_on_paths_that_keep_a_clearance_is_their_least_length()
+
+
+def test_a_search_that_the_clock_ended_leaves_a_true_bound():
+    occupied = two_ways()
+    space = GridSpace.from_blocked(occupied)
+    ends = (5.5, 18.5), (34.5, 18.5)
+    whole = plan(space, *ends, clearance=4.0, algorithm='polyanya')
+    request = check_request(
+        space, *ends, goal_radius=0.0, simplify=True, seed=0, clearance=4.0, algorithm='polyanya'
+    )
+    for n_iterations in range(8):
+        cut = shortest.shortest_kept_clear(request, Budget(math.inf, n_iterations))
+        assert math.dist(*ends) <= cut.lower_bound <= whole.clear_lower_bound + 1e-9
 
 
 def test_cells_that_keep_a_clearance_are_those_of_the_definition():
@@ -287,10 +364,7 @@ def test_cells_that_keep_a_clearance_are_those_of_the_definition():
     space = GridSpace.from_blocked(occupied, 0.5, robot_radius=0.6)
     for clearance in (0.4, 0.5, 0.6, 1.5):
         clear = kept_clear(space, clearance)
-        expected = space.blocked.copy()
-        for row, column in np.argwhere(~expected):
-            across = np.maximum(np.abs(np.argwhere(occupied) - (row, column)) - 1, 0)
-            expected[row, column] = np.hypot(*across.T).min() * 0.5 < clearance - 1e-9
+        expected = ~cells_that_keep(space, occupied, clearance)
         np.testing.assert_array_equal(clear.blocked, expected)
         assert kept_clear(space, clearance) is clear
     assert kept_clear(space, 0.4) is not clear
