@@ -34,6 +34,7 @@ def as_json(result: PlanResult) -> str:
             'length': _finite(result.length),
             'lower_bound': _finite(result.lower_bound),
             'clear_lower_bound': _finite(result.clear_lower_bound),
+            'next_lower_bound': _finite(result.next_lower_bound),
             'path': result.path.tolist(),
             **twists,
             'paths': [path.tolist() for path in result.paths],

@@ -31,6 +31,7 @@ KEYS = [
     'length',
     'lower_bound',
     'clear_lower_bound',
+    'next_lower_bound',
     'path',
     'paths',
     'goal_offset',

@@ -117,6 +117,7 @@ class MovedRequest(NamedTuple):
             escape=self.escape,
             lower_bound=result.lower_bound + self.escape,
             clear_lower_bound=result.clear_lower_bound + self.escape,
+            next_lower_bound=result.next_lower_bound + self.escape,
         )
 
     def _with_start(self, path: Floats) -> Floats:

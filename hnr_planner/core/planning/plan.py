@@ -114,7 +114,7 @@ def plan(
         Number of paths to find, none of which can be deformed into another past an obstacle:
         ``PlanResult.paths``, the shortest first. There may be fewer. All have the same ends, also
         in a goal region. On a grid and without a clearance each is the shortest path that it can
-        be deformed into.
+        be deformed into, and no others are shorter (``PlanResult.next_lower_bound``).
     goal_tolerance : float
         Where the goal is blocked or cannot be reached, the path ends at the nearest point within
         this distance [m] that can: ``PlanResult.goal_offset`` and the message state it. A goal

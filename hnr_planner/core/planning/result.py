@@ -174,6 +174,10 @@ class PlanResult(SearchResult):
     clear_lower_bound : float
         The same for paths over cells of a grid that keep the requested clearance everywhere [m]:
         inf where no such cells connect the ends; 0 where these were not searched.
+    next_lower_bound : float
+        The same for paths with the ends of ``path`` that can be deformed into none of ``paths``
+        and pass no point twice when pulled taut [m]: inf where there are none; 0 where that was
+        not searched: in other spaces than grids, with a clearance, without alternatives.
     escape : float
         Length of the first segment of the path [m] where it leads from a start that is not free
         to free space (``start_escape``); else 0.
@@ -188,6 +192,7 @@ class PlanResult(SearchResult):
     escape: float = 0.0
     lower_bound: float = 0.0
     clear_lower_bound: float = 0.0
+    next_lower_bound: float = 0.0
     twists: Floats | None = None
 
     def poses(self, spacing: float) -> Floats:

@@ -46,6 +46,7 @@ def joined(results: Sequence[PlanResult]) -> PlanResult:
         length=sum(result.length for result in results),
         lower_bound=sum(result.lower_bound for result in results),
         clear_lower_bound=sum(result.clear_lower_bound for result in results),
+        next_lower_bound=0.0,
         samples=np.vstack([result.samples for result in results]),
         parents=np.concatenate(parents),
         iterations=sum(result.iterations for result in results),

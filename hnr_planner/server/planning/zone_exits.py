@@ -50,6 +50,7 @@ def led_out(result: PlanResult, start: tuple[float, float], exit_point: Floats) 
         length=result.length + escape,
         lower_bound=result.lower_bound + escape,
         clear_lower_bound=result.clear_lower_bound + escape,
+        next_lower_bound=result.next_lower_bound + escape,
         first_solution=first,
         escape=escape,
     )

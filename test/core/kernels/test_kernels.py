@@ -11,7 +11,7 @@ from hnr_planner.core import GridSpace
 from hnr_planner.core.kernels import cache_folder
 from hnr_planner.core.kernels.kernel import interpreted
 from hnr_planner.core.kernels.streams import stream
-from hnr_planner.core.planning.alternatives import class_graph
+from hnr_planner.core.planning.alternatives import class_graph, taut_search
 from hnr_planner.core.planning.homology import islands_at, NO_ISLANDS
 from hnr_planner.core.planning.planner import Problem
 from hnr_planner.core.planning.planners import hit_and_run_connect as connect
@@ -19,6 +19,8 @@ from hnr_planner.core.planning.planners import nearest, rrt
 from hnr_planner.core.planning.planners.hit_and_run import _walk
 from hnr_planner.core.planning.postprocessing import clearance as stand_off
 from hnr_planner.core.planning.postprocessing import shortcuts
+from hnr_planner.core.planning.roadmap.grid.corners import find_corners
+from hnr_planner.core.planning.roadmap.grid.edges import Edges, scan
 from hnr_planner.core.spaces.primitives import chord_or_empty
 from hnr_planner.core.trees import NONE
 import numpy as np
@@ -187,6 +189,26 @@ def test_alternatives():
     graph = class_graph.class_graph(points, edges[0][0])
     assert_same(*both(class_graph._search, graph, islands, 4))
     assert_same(*both(class_graph.is_simple, points))
+
+
+def test_shortest_classes_of_a_grid():
+    corners = find_corners(GRID.slabs)
+    counts, to, _, _ = scan(GRID.slabs, corners, np.arange(len(corners.ends)))
+    graph = corners, Edges(np.concatenate([[0], np.cumsum(counts[:, 0])]), to)
+    begun = both(taut_search.begin, GRID.slabs, *graph, PROBLEM.start, PROBLEM.goal, 4)
+    searches = [each[0] for each in begun]
+    extended = [
+        taut_search.extend(*graph, searches[0], 500),
+        interpreted(taut_search.extend)(*graph, searches[1], 500),
+    ]
+    assert extended[0] == extended[1] > 0
+    used = [slice(int(search.sizes[0])) for search in searches]
+    assert_same(
+        *(
+            [s.rest, s.to_goal, s.sizes, s.states[rows], s.parents[rows], s.lengths[rows]]
+            for s, rows in zip(searches, used, strict=True)
+        )
+    )
 
 
 def test_stand_off():

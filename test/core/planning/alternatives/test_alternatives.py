@@ -1,20 +1,24 @@
-"""Further paths: free, different by an independent count of windings, the shortest first."""
+"""Further paths: free, different by the sides they pass, the shortest of all, in order."""
 
 from collections import deque
+from collections.abc import Callable
 from functools import partial
 from heapq import heappop, heappush
 from itertools import combinations, pairwise
 import math
 from test.brute_force import path_collisions
 from test.laws import maps
+from test.visibility_graph import convex_corners, is_visible, Point, SCALE
 import threading
 
 from hnr_planner import core
 from hnr_planner.core import ALGORITHMS, GridSpace, PlannerStatus, PlanResult, RequestError
 from hnr_planner.core.kernels.streams import stream
-from hnr_planner.core.planning.alternatives import alternatives as module
-from hnr_planner.core.planning.alternatives.sleeve import shortest_in_class
+from hnr_planner.core.planning.alternatives import grid_classes
+from hnr_planner.core.planning.alternatives.grid_classes import corner_graph
+from hnr_planner.core.planning.alternatives.taut_search import begin
 from hnr_planner.core.planning.homology import islands_at, signature
+from hnr_planner.core.planning.limits import Budget
 from hnr_planner.core.planning.postprocessing.simplify import shorten
 from hnr_planner.maps import load_map
 from hypothesis import given, settings, strategies
@@ -28,6 +32,8 @@ Floats = NDArray[np.float64]
 plan = partial(core.plan, time_limit=60.0)
 
 ORIGIN = (2.0, -1.0, 0.4)
+#: Small maps in the comparison with all classes.
+N_MAPS = 40
 
 
 def three_blocks() -> Bools:
@@ -77,6 +83,30 @@ def windings(points: Floats, first: Floats, second: Floats) -> list[int]:
     return around
 
 
+def sides_passed(points: Floats, path: Floats) -> list[int]:
+    """
+    Return where a path crosses the rays that go up from points: 1 + k to the right, -1 - k back.
+
+    A crossing that is taken back at once is left out: what remains is the same for two paths with
+    the same ends exactly when they can be deformed into each other without meeting a point.
+    """
+    passed: list[int] = []
+    for a, b in pairwise(path):
+        direction = 1 if a[0] < b[0] else -1
+        crossed = []
+        for k, (x, y) in enumerate(points):
+            if (a[0] < x) != (b[0] < x):
+                t = (x - a[0]) / (b[0] - a[0])
+                if a[1] + t * (b[1] - a[1]) > y:
+                    crossed.append((t, direction * (1 + k)))
+        for _, letter in sorted(crossed):
+            if passed and passed[-1] == -letter:
+                passed.pop()
+            else:
+                passed.append(letter)
+    return passed
+
+
 def crosses_itself(path: Floats) -> bool:
     def side(a: Floats, b: Floats, x: Floats) -> float:
         return (b[0] - a[0]) * (x[1] - a[1]) - (b[1] - a[1]) * (x[0] - a[0])
@@ -120,39 +150,98 @@ def check(space: GridSpace, result: PlanResult, n_paths: int) -> None:
     assert not any(map(crosses_itself, paths[1:]))
     centres = [space.cell_centres(*island) for island in islands(space.blocked)]
     for first, second in combinations(paths, 2):
-        assert any(windings(centres, first, second))
+        assert sides_passed(centres, first) != sides_passed(centres, second)
 
 
-def lengths_over_cells(blocked: Bools, start: tuple, goal: tuple, n: int) -> list[float]:
-    """Return the lengths of the n shortest classes over the centres of neighbouring cells."""
-    rays = islands(blocked)
+def shortest_of_classes(
+    blocked: Bools, start: Point, goal: Point, n: int
+) -> list[tuple[float, list[Point]]]:
+    """
+    Return lengths [cells] and vertices of the paths of the n shortest homology classes.
 
-    def passed(signature: tuple, column: int, row: int, step: int) -> tuple:
-        """Cross the rays that go up from the islands, from one column to the next."""
-        line = max(column, column + step)
-        return tuple(
-            count + step * (step != 0 and island[1] == line and island[0] < row)
-            for count, island in zip(signature, rays, strict=True)
-        )
+    Dijkstra's algorithm over corners and numbers of crossings of the rays that go up from the
+    islands, with all edges of the full visibility graph. Start, goal and vertices are in
+    ``SCALE`` units to a cell.
+    """
+    rays = [(SCALE * x + SCALE // 2, SCALE * y + SCALE // 2) for y, x in islands(blocked)]
+    points = [start, goal, *convex_corners(blocked)]
+    pairs = combinations(range(len(points)), 2)
+    visible = [(i, j) for i, j in pairs if is_visible(blocked, points[i], points[j])]
+    near: dict[int, list[int]] = {i: [] for i in range(len(points))}
+    for i, j in visible:
+        near[i].append(j)
+        near[j].append(i)
 
-    waiting = [(0.0, start, (0,) * len(rays))]
-    known: dict[tuple, list] = {}
-    found = []
-    while len(found) < n:
-        far, (row, column), signature = heappop(waiting)
-        here = known.setdefault((row, column), [])
-        if signature in here or len(here) == 2 * n:
+    def crossed(ray: Point, a: Point, b: Point) -> int:
+        (x, y), direction = ray, (1 if a[0] < b[0] else -1)
+        if (a[0] < x) == (b[0] < x):
+            return 0
+        rise = (a[1] - y) * (b[0] - a[0]) + (x - a[0]) * (b[1] - a[1])
+        return direction if direction * rise > 0 else 0
+
+    waiting = [(0.0, (0,), (0,) * len(rays))]
+    known, found = set(), []
+    while waiting and len(found) < n:
+        far, way, counts = heappop(waiting)
+        if (way[-1], counts) in known:
             continue
-        here.append(signature)
-        if (row, column) == goal:
-            found.append(far)
-        for i, j in [(i, j) for i in (-1, 0, 1) for j in (-1, 0, 1) if i or j]:
-            cells = [(row + i, column), (row, column + j), (row + i, column + j)]
-            inside = all(0 <= r < blocked.shape[0] and 0 <= c < blocked.shape[1] for r, c in cells)
-            if inside and not any(blocked[cell] for cell in cells):
-                after = passed(signature, column, row, j)
-                heappush(waiting, (far + math.hypot(i, j), cells[2], after))
+        known.add((way[-1], counts))
+        here = points[way[-1]]
+        if way[-1] == 1:
+            found.append((far / SCALE, [points[i] for i in way]))
+        for j in near[way[-1]]:
+            steps = [crossed(ray, here, points[j]) for ray in rays]
+            after = tuple(map(sum, zip(counts, steps, strict=True)))
+            heappush(waiting, (far + math.dist(here, points[j]), (*way, j), after))
     return found
+
+
+def passes_a_point_twice(blocked: Bools, path: list[Point]) -> bool:
+    """Return whether a path crosses itself, or passes a corner or one of its ends twice."""
+    passed = path[:1]
+    for a, b in pairwise(path):
+        between = [
+            c
+            for c in {*convex_corners(blocked), path[0], path[-1]}
+            if c not in (a, b)
+            and (b[0] - a[0]) * (c[1] - a[1]) == (b[1] - a[1]) * (c[0] - a[0])
+            and (c[0] - a[0]) * (c[0] - b[0]) + (c[1] - a[1]) * (c[1] - b[1]) < 0
+        ]
+        passed += [*sorted(between, key=lambda c: math.dist(a, c)), b]
+    return len(set(passed)) < len(passed) or crosses_itself(np.array(passed, dtype=float))
+
+
+def check_against_all_classes(seed: int) -> int:
+    """
+    Compare the alternatives on a small map with all classes; return the number compared.
+
+    What is as long as the last one that either side has may be in one list only.
+    """
+    rng = np.random.default_rng(seed)
+    blocked = rng.random((7, 9)) < rng.uniform(0.05, 0.2)
+    space = GridSpace.from_blocked(blocked)
+    free = np.argwhere(space.largest_component())
+    (first_row, first_column), (row, column) = free[rng.integers(len(free), size=2)].tolist()
+    # Not on lines through corners, and on some of them.
+    offset = rng.choice([1, 2, 3], size=4).tolist()
+    start = SCALE * first_column + offset[0], SCALE * first_row + offset[1]
+    goal = SCALE * column + offset[2], SCALE * row + offset[3]
+    if start == goal:
+        return 0
+    ends = np.array(start) / SCALE, np.array(goal) / SCALE
+    result = plan(space, *ends, alternatives=4, seed=seed)
+    check(space, result, 4)
+    known = shortest_of_classes(blocked, start, goal, 40)
+    lengths = [far for far, path in known if not passes_a_point_twice(blocked, path)]
+    found = [length(path) for path in result.paths]
+    most = math.inf if result.next_lower_bound == math.inf else found[-1] - 1e-6
+    if len(known) == 40:
+        most = min(most, known[-1][0] - 1e-6)
+    expected, compared = ([x for x in each if x < most] for each in (lengths, found))
+    assert compared == pytest.approx(expected, abs=1e-6), seed
+    assert result.lower_bound == pytest.approx(lengths[0], abs=1e-6)
+    assert result.next_lower_bound >= found[-1] - 1e-6
+    return len(compared)
 
 
 # -- what is found -------------------------------------------------------------------------------
@@ -166,13 +255,52 @@ def test_three_blocks_have_three_paths_and_more(seed: int):
 
 
 def test_they_are_the_shortest_of_all_classes():
-    """Compared with all paths over cell centres, which are up to 8 % longer than taut ones."""
-    over_cells = lengths_over_cells(BLOCKED, (30, 3), (30, 56), 3)
-    for seed in range(20):
-        result = plan(SPACE, START, GOAL, alternatives=3, seed=seed)
-        check(SPACE, result, 3)
-        for path, cells in zip(result.paths, over_cells, strict=True):
-            assert 0.92 * cells <= length(path) / SPACE.resolution <= 1.01 * cells
+    """On small maps with up to a dozen islands, against the full visibility graph."""
+    assert sum(map(check_against_all_classes, range(N_MAPS))) >= 2 * N_MAPS
+
+
+def test_a_search_that_ends_early_has_the_shortest_and_a_true_bound(
+    monkeypatch: pytest.MonkeyPatch,
+):
+    budget, ends = Budget(math.inf), (np.array(START), np.array(GOAL))
+    whole = grid_classes.shortest_classes(SPACE, *ends, 3, budget)
+    monkeypatch.setattr(grid_classes, 'LABELS_AT_ONCE', 1)
+    for most in range(4):
+        monkeypatch.setattr(grid_classes, 'LABELS_PER_CLASS', most)
+        cut = grid_classes.shortest_classes(SPACE, *ends, 3, budget)
+        n = len(cut.paths)
+        assert cut.n_labels <= 3 * most and n == (3 if most == 3 else min(n, 2))
+        for path, same in zip(cut.paths, whole.paths, strict=False):
+            np.testing.assert_array_equal(path, same)
+        assert n == 3 or cut.lower_bound <= length(whole.paths[n]) + 1e-6
+
+
+def weighted(*arguments):
+    """Begin a search whose estimates exceed the least lengths: it is in a hurry to the goal."""
+    search = begin(*arguments)
+    return search._replace(rest=2.0 * search.rest)
+
+
+def without_some_edges(space, budget):
+    """Return the graph without the last edge of every state, as a sweep that ends too early."""
+    corners, edges = corner_graph(space, budget)
+    lasts = edges.first[1:][np.diff(edges.first) > 0] - 1
+    counts = np.maximum(np.diff(edges.first) - 1, 0)
+    first = np.concatenate([[0], np.cumsum(counts)])
+    return grid_classes.CornerGraph(
+        corners, edges._replace(first=first, to=np.delete(edges.to, lasts))
+    )
+
+
+@pytest.mark.parametrize(
+    ('name', 'mutant'), [('begin', weighted), ('corner_graph', without_some_edges)]
+)
+def test_a_mutant_that_misses_classes_is_caught(
+    name: str, mutant: Callable, monkeypatch: pytest.MonkeyPatch
+):
+    monkeypatch.setattr(grid_classes, name, mutant)
+    with pytest.raises(AssertionError):
+        test_they_are_the_shortest_of_all_classes()
 
 
 boxes = strategies.tuples(*[strategies.integers(4, 30)] * 2, *[strategies.integers(1, 9)] * 2)
@@ -286,28 +414,6 @@ def detour(beyond: float) -> Floats:
     return np.array(steps, dtype=float)
 
 
-@pytest.mark.parametrize('seed', range(10))
-def test_on_a_grid_a_ragged_path_becomes_the_shortest_that_it_can_be_deformed_into(seed: int):
-    """It may cross itself, turn back and pass along lines of cells."""
-    rng = np.random.default_rng(seed)
-    blocked = maps.speckle(20, 24, 0.2, seed=seed)
-    space = GridSpace.from_blocked(blocked, 0.5, ORIGIN)
-    around = islands_at(space.island_points)
-    for _ in range(3):
-        cells = np.argwhere(space.largest_component())
-        stops = space.cell_centres(*cells[rng.integers(len(cells), size=4)].T)
-        parts = [plan(space, a, b, seed=seed, simplify=False).path for a, b in pairwise(stops)]
-        path = np.concatenate(parts)
-        points = space.to_kernel(path)
-        taut, least = shortest_in_class(space.data, space.slabs, points, space.margin)
-        assert signature(around, taut) == signature(around, points)
-        taut = space.from_kernel(taut)
-        assert path_collisions(taut, blocked, 0.5, ORIGIN) == []
-        assert slack(space, taut) == []
-        assert 0.5 * least == pytest.approx(length(taut), abs=1e-6)
-        assert length(taut) <= length(path) + 1e-9
-
-
 @pytest.mark.parametrize('seed', range(20))
 def test_a_path_is_pulled_taut_on_its_side_of_every_island(seed: int):
     blocked = np.zeros((60, 60), dtype=bool)
@@ -315,27 +421,13 @@ def test_a_path_is_pulled_taut_on_its_side_of_every_island(seed: int):
     space = GridSpace.from_blocked(blocked)
     pillar = islands_at(space.island_points)
     path = detour(beyond=50.0)
-    budget, rng = module.Budget(math.inf), stream(seed)
+    budget, rng = Budget(math.inf), stream(seed)
     taut = shorten(space, path, rng, budget, islands=pillar)
     assert path_collisions(taut, blocked, 1.0) == []
     assert signature(pillar, space.to_kernel(taut)) == signature(pillar, space.to_kernel(path))
     assert windings([(30.0, 30.0)], path, taut) == [0]
     over = math.dist((4, 30), (29, 31)) + 2.0 + math.dist((31, 31), (56, 30))
     assert over <= length(taut) <= 1.002 * over
-
-
-def test_a_mutant_that_lets_go_of_the_class_is_caught(monkeypatch: pytest.MonkeyPatch):
-    """Shortened past islands, different classes become one: then three paths are not found."""
-
-    def careless(data, slabs, points, margin):
-        path = SPACE.from_kernel(points)
-        shorter = shorten(SPACE, path, stream(0), module.Budget(math.inf))
-        return SPACE.to_kernel(shorter), length(shorter)
-
-    monkeypatch.setattr(module, 'shortest_in_class', careless)
-    start, goal = SPACE.cell_centres(39, 3), SPACE.cell_centres(39, 56)
-    found = [len(plan(SPACE, start, goal, alternatives=3, seed=k).paths) for k in range(5)]
-    assert min(found) < 3
 
 
 # -- refused -------------------------------------------------------------------------------------
