@@ -24,6 +24,10 @@ from hnr_planner.core.spaces.primitives import (
 from hnr_planner.core.spaces.search import entry_by_search, exit_by_search, is_in, work_size
 import numpy as np
 
+#: Distance within which ``exit_beyond`` locates an exit, as a fraction of a step: it takes 4 tests
+#: instead of the 30 down to ``closeness``, which are a seventh of the time to an arm's first path.
+ROUGHLY = 1 / 16
+
 
 class OracleData(NamedTuple):
     """
@@ -173,10 +177,20 @@ def _segment_is_free(oracle, a, b):
 @exit_beyond.register(OracleData)
 @kernel
 def _exit_beyond(oracle, x, u, t):
-    """Return the exit of the ray if it is beyond ``t``; else a value up to ``t``."""
-    if oracle.chord == 0 and t > 0.0:
-        return _first_exit(oracle, x, u, t, np.inf) if _is_free_up_to(oracle, x, u, t) else 0.0
-    return _first_exit(oracle, x, u, 0.0, np.inf)
+    """
+    Return the exit of the ray if it is beyond ``t``; else a value up to ``t``.
+
+    A search locates it within ``ROUGHLY`` of a step only.
+    """
+    if oracle.chord != 0:
+        return _first_exit(oracle, x, u, 0.0, np.inf)
+    if t > 0.0 and not _is_free_up_to(oracle, x, u, t):
+        return 0.0
+    if not _is_in(oracle, x, u, t, np.empty(len(x) + 1)):
+        return t
+    _, last = box_span(oracle.lower, oracle.upper, x, u)
+    step = oracle.resolution / norm(u)
+    return exit_by_search(oracle, x, u, t, np.inf, last, step, ROUGHLY * step)
 
 
 @kernel

@@ -133,7 +133,8 @@ def exit_beyond(space: CompiledSpace, x: Floats, u: Floats, t: float) -> float:
     Return the parameter ``s > t`` at which the ray from ``x`` along ``u`` leaves ``space``.
 
     Where it leaves the space before, any value up to ``t`` may be returned: of several rays the
-    longest is found sooner than the length of each.
+    longest is found sooner than the length of each. A space that can only test points may return
+    a parameter just after the exit: a fraction of the distance at which it tests them.
     """
     return first_exit(space, x, u, 0.0, math.inf)
 

@@ -4,6 +4,7 @@ from collections.abc import Iterator
 import math
 
 from hnr_planner.core import BallSpace, BoxSpace, DifferenceSpace, OracleSpace, Space, UnionSpace
+from hnr_planner.core.spaces.oracle_data import ROUGHLY
 from hnr_planner.core.spaces.primitives import (
     contains,
     exit_beyond,
@@ -63,8 +64,9 @@ def test_an_exit_beyond_a_parameter_is_the_exit(name: str) -> None:
         end = first_exit.interpreted(space.data, x, u, 0.0, math.inf)
         found = exit_beyond.interpreted(space.data, x, u, t)
         if end > t:
-            # An oracle locates its exits up to a thousandth of the margin.
-            assert found == pytest.approx(end, abs=space.margin, rel=0.0)
+            # An oracle locates exits to a thousandth of the margin, and these roughly.
+            rough = ROUGHLY * space.resolution if isinstance(space, OracleSpace) else 0.0
+            assert abs(found - end) * np.linalg.norm(u) <= rough + space.margin
             beyond += 1
         else:
             assert found <= t
