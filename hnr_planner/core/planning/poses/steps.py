@@ -70,9 +70,12 @@ def shuffle(problem, trees, tree, size, rng):
     Add strokes back and forth that turn the robot to one side; return the number of vertices.
 
     This is how a driver turns in a tight place, or leaves one: a car goes ahead and back in turn,
-    at full lock, mostly up to the contact; the other drives turn in place and move in turn.
+    at full lock, mostly up to the contact; the other drives turn in place and move in turn. A
+    robot that must not drive backwards makes strokes ahead only, a car to the left and right.
     """
     space, u = problem.space, trees.work[1]
+    # The tree of the goal grows against the direction in which the robot drives.
+    driven = 1.0 if tree == 0 else -1.0
     row = _draw_vertex(trees, tree, size, False, rng)
     if uniform(rng) < AT_ROOT:
         while trees.parents[row] != NONE:
@@ -93,6 +96,9 @@ def shuffle(problem, trees, tree, size, rng):
             for i in range(3):
                 u[i] *= sign
             horizon = space.reach
+        if not space.reverse and u[0] * driven < 0.0:
+            for i in range(3):
+                u[i] = -u[i]
         x = trees.poses[row]
         end = first_contact_of(space, x[0], x[1], x[2], u[0], u[1], u[2], horizon)
         # The footprint moves by two units of length in a unit of time, at the most.
