@@ -7,6 +7,7 @@ from typing import Any
 from hnr_planner.core import GridSpace
 from hnr_planner.core.kernels.kernel import interpreted
 from hnr_planner.core.spaces.curves.curve import Arc, first_exit_on_curve, Parabola
+from hnr_planner.core.spaces.grid.curves import first_exit_of_arc
 import numpy as np
 import pytest
 
@@ -51,6 +52,39 @@ def test_contact_on_a_grid_is_where_brute_force_finds_it(draw: Any) -> None:
         else:
             assert not curve_collisions(part(max(left - 1e-6, 0.0)), blocked)
             assert curve_collisions(part(left + 1e-5), blocked)
+            contacts += 1
+    assert min(contacts, free) > 100
+
+
+def test_an_arc_followed_without_an_angle_ends_where_brute_force_finds_it() -> None:
+    """600 arcs to either side, some of them along an axis at first: as for curves."""
+    rng = np.random.default_rng(4)
+    contacts = free = 0
+    while contacts + free < 600:
+        blocked = rng.random(SHAPE) < rng.choice([0.03, 0.15, 0.3])
+        space = GridSpace.from_blocked(blocked)
+        x = rng.uniform((0, 0), SHAPE[::-1])
+        if not space.contains(x):
+            continue
+        x = space.to_kernel(x)
+        (_, heading, curvature), end, _ = draw_arc(rng, x)
+        if curvature == 0.0:
+            continue
+        dx, dy = math.cos(heading), math.sin(heading)
+        if rng.random() < 0.2:
+            dx, dy = [(1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0)][rng.integers(4)]
+            heading = math.atan2(dy, dx)
+        begin = complex(*(x - 1.0))
+        of_arc = space.data.free_distance, x[0], x[1], dx, dy, curvature, end
+        left = first_exit_of_arc(*of_arc)
+        assert left == interpreted(first_exit_of_arc)(*of_arc)
+        if left == math.inf:
+            assert not curve_collisions(Bend(begin, heading, curvature, [0.0, end]), blocked)
+            free += 1
+        else:
+            before, after = max(left - 1e-6, 0.0), left + 1e-5
+            assert not curve_collisions(Bend(begin, heading, curvature, [0.0, before]), blocked)
+            assert curve_collisions(Bend(begin, heading, curvature, [0.0, after]), blocked)
             contacts += 1
     assert min(contacts, free) > 100
 

@@ -49,7 +49,7 @@ class Prices(NamedTuple):
     change : float
         Cost of each change between driving ahead and backwards [cells].
     turn : float
-        Cost of turning in place [cells / rad].
+        Cost of turning in place, and the least of turning while moving [cells / rad].
 
     """
 
@@ -98,12 +98,12 @@ def motion_cost(prices, vx, vy, omega, driven):
     """
     Return the cost [cells] of a motion, changes of direction aside.
 
-    ``driven`` is -1 where the motion is driven the other way round, else 1.
+    It is the price of its length, or that of its turn where that is more: a turn does not become
+    free by a move, however short. ``driven`` is -1 where the motion is driven the other way round,
+    else 1.
     """
-    length = math.hypot(vx, vy)
-    if length == 0.0:
-        return prices.turn * abs(omega)
-    return length * (prices.reverse_penalty if vx * driven < 0.0 and vy == 0.0 else 1.0)
+    factor = prices.reverse_penalty if vx * driven < 0.0 and vy == 0.0 else 1.0
+    return max(factor * math.hypot(vx, vy), prices.turn * abs(omega))
 
 
 @kernel

@@ -121,6 +121,21 @@ class Winding(NamedTuple):
     curvature: float
 
 
+class Bend(NamedTuple):
+    """
+    A coordinate of a piece of an arc, less than half a circle, without an angle in it.
+
+    It is a function of ``m = 2 tan(curvature s / 2) / curvature``, where s is the length along the
+    piece; m grows with s. ``cos`` and ``sin`` are those of the angle between the coordinate's axis
+    and the direction at the begin of the piece, where the coordinate is ``start``.
+    """
+
+    start: float
+    cos: float
+    sin: float
+    curvature: float
+
+
 @coordinate.register(Parabola)
 @kernel
 def _parabola_coordinate(curve, i):
@@ -230,6 +245,26 @@ def _winding_reach(f, value, s):
     if f.curvature == 0.0:
         return s + 2.0 * tangent
     return s + 2.0 * math.atan(f.curvature * tangent) / f.curvature
+
+
+@at.register(Bend)
+@kernel
+def _bend_at(f, m):
+    """Return the value of a quotient of two quadratics."""
+    half = f.curvature * m / 2.0
+    return f.start + m * (f.cos - f.sin * half) / (1.0 + half * half)
+
+
+@reach.register(Bend)
+@kernel
+def _bend_reach(f, value, m):
+    """Return the first root of a quadratic equation that is above 0, whatever ``m`` is."""
+    away = value - f.start
+    bend = f.curvature * away
+    squared = f.cos * f.cos - bend * (bend + 2.0 * f.sin)
+    if squared < 0.0:
+        return math.inf
+    return 2.0 * away / (f.cos + math.copysign(math.sqrt(squared), away))
 
 
 @kernel

@@ -7,8 +7,8 @@ order, as a ray does: the traversal is that of a ray, with roots instead of quot
 
 import math
 
-from hnr_planner.core.kernels.kernel import kernel
-from hnr_planner.core.spaces.curves.curve import at, coordinate, reach, turn
+from hnr_planner.core.kernels.kernel import inlined, kernel
+from hnr_planner.core.spaces.curves.curve import at, Bend, coordinate, reach, turn
 from hnr_planner.core.spaces.grid.traversal import (
     first_cell,
     is_along_wall,
@@ -26,17 +26,8 @@ def first_exit_from_grid(grid, curve, end):
 
     The curve is in the kernel frame [cells].
     """
+    free_distance = grid.free_distance
     x, y = coordinate(curve, 0), coordinate(curve, 1)
-    return first_exit_of_coordinates(grid.free_distance, x, y, end)
-
-
-@kernel
-def first_exit_of_coordinates(free_distance, x, y, end):
-    """
-    Return the first parameter in [0, ``end``] at which a curve is not free; inf for none.
-
-    ``x`` and ``y`` are the coordinates of the curve [cells], as ``coordinate`` returns them.
-    """
     if not is_free(free_distance, at(x, 0.0), at(y, 0.0)):
         return 0.0
     t = 0.0
@@ -47,6 +38,52 @@ def first_exit_of_coordinates(free_distance, x, y, end):
             return first
         t = piece_end
     return math.inf
+
+
+@kernel
+def first_exit_of_arc(free_distance, x, y, dx, dy, curvature, end):
+    """
+    Return the first length in [0, ``end``] at which an arc is not free; inf for none.
+
+    The arc begins at (x, y) [cells] in the unit direction (dx, dy); its ``curvature`` [1 / cells]
+    is above 0 for a turn to the left, and not 0. From one turning point to the next it is followed
+    without an angle.
+    """
+    if not is_free(free_distance, x, y):
+        return 0.0
+    bend, length = abs(curvature), 0.0
+    while length < end:
+        next_dx, next_dy = _next_axis(dx, dy, curvature)
+        cross = abs(dx * next_dy - dy * next_dx)
+        tangent = cross / (1.0 + dx * next_dx + dy * next_dy)
+        piece = 2.0 * math.atan(tangent) / bend
+        if piece >= end - length:
+            piece = end - length
+            tangent = math.tan(bend * piece / 2.0)
+        last = 2.0 * tangent / bend
+        along_x, along_y = Bend(x, dx, dy, curvature), Bend(y, dy, -dx, curvature)
+        first = _first_exit_of_piece(free_distance, along_x, along_y, 0.0, last)
+        if first <= last:
+            return length + 2.0 * math.atan(bend * first / 2.0) / bend
+        if piece == end - length:
+            return math.inf
+        x, y = at(along_x, last), at(along_y, last)
+        dx, dy = next_dx, next_dy
+        length += piece
+    return math.inf
+
+
+@inlined
+def _next_axis(dx, dy, curvature):
+    """Return the direction along an axis that an arc has next after the direction (dx, dy)."""
+    side = math.copysign(1.0, curvature)
+    if dx > 0.0 and side * dy >= 0.0:
+        return 0.0, side
+    if dx <= 0.0 and side * dy > 0.0:
+        return -1.0, 0.0
+    if dx < 0.0:
+        return 0.0, -side
+    return 1.0, 0.0
 
 
 @kernel

@@ -18,10 +18,9 @@ is not convex touches first. All lengths are in cells, in the kernel frame of a 
 import math
 
 from hnr_planner.core.kernels.kernel import inlined, kernel
-from hnr_planner.core.spaces.curves.curve import Winding
-from hnr_planner.core.spaces.grid.curves import first_exit_of_coordinates
+from hnr_planner.core.spaces.grid.curves import first_exit_of_arc
 from hnr_planner.core.spaces.grid.traversal import traverse
-from hnr_planner.core.spaces.poses.motion import moved
+from hnr_planner.core.spaces.poses.motion import carried
 from hnr_planner.core.spaces.poses.overlap import with_span
 
 #: Distance [cells] at which a corner counts as touching a side: above rounding, and below the
@@ -67,13 +66,13 @@ def first_contact(
     if abs(omega) * (rows + columns) * (rows + columns) <= STRAIGHT * math.hypot(vx, vy):
         omega = 0.0
     end = min(horizon, 2.0 * math.pi / abs(omega)) if omega != 0.0 else horizon
-    begin = _free_time(free_distance, circle, x, y, yaw, vx, vy, omega, end)
+    cos, sin = math.cos(yaw), math.sin(yaw)
+    begin = _free_time(free_distance, circle, x, y, cos, sin, vx, vy, omega, end)
     if begin >= end:
         return math.inf
-    x, y, yaw = moved(x, y, yaw, vx, vy, omega, begin)
+    x, y, cos, sin = carried(x, y, cos, sin, vx, vy, omega, begin)
     latest, end = end, end - begin
     first, n = math.inf, len(edges)
-    cos, sin = math.cos(yaw), math.sin(yaw)
     for k in range(n):
         if edges[k, 5] == 0.0:
             continue
@@ -89,9 +88,8 @@ def first_contact(
         if speed == 0.0 or outwards <= trails:
             continue
         at_x, at_y = x + cos * bx - sin * by, y + sin * bx + cos * by
-        entry = _vertex_contact(
-            free_distance, at_x, at_y, yaw, wx, wy, omega, speed, min(end, first)
-        )
+        dx, dy = cos * wx - sin * wy, sin * wx + cos * wy
+        entry = _vertex_contact(free_distance, at_x, at_y, dx, dy, omega, speed, min(end, first))
         first = min(first, entry)
     for k in range(n):
         met = _edge_contact(
@@ -103,7 +101,8 @@ def first_contact(
             edges[k, 4],
             x,
             y,
-            yaw,
+            cos,
+            sin,
             vx,
             vy,
             omega,
@@ -114,7 +113,7 @@ def first_contact(
 
 
 @kernel
-def _free_time(free_distance, circle, x, y, yaw, vx, vy, omega, end):
+def _free_time(free_distance, circle, x, y, cos, sin, vx, vy, omega, end):
     """
     Return a time, up to ``end`` at least, before which the circle around a footprint is free.
 
@@ -122,12 +121,11 @@ def _free_time(free_distance, circle, x, y, yaw, vx, vy, omega, end):
     """
     wx, wy = vx - omega * circle[1], vy + omega * circle[0]
     speed = math.hypot(wx, wy)
-    cos, sin = math.cos(yaw), math.sin(yaw)
     at_x = x + cos * circle[0] - sin * circle[1]
     at_y = y + sin * circle[0] + cos * circle[1]
     s = 0.0
     while s < end:
-        here_x, here_y, _ = moved(at_x, at_y, yaw, wx, wy, omega, s)
+        here_x, here_y, _, _ = carried(at_x, at_y, cos, sin, wx, wy, omega, s)
         skip = free_distance[math.floor(here_y), math.floor(here_x)] - 1.0 - circle[2]
         if skip <= LEAST_SKIP:
             return s
@@ -136,25 +134,21 @@ def _free_time(free_distance, circle, x, y, yaw, vx, vy, omega, end):
 
 
 @kernel
-def _vertex_contact(free_distance, x, y, yaw, wx, wy, omega, speed, end):
+def _vertex_contact(free_distance, x, y, dx, dy, omega, speed, end):
     """
     Return the time up to ``end`` at which a vertex at (x, y) enters a blocked cell; inf for none.
 
-    (wx, wy) is the vertex's velocity in the robot's frame, and ``speed`` the length of that.
+    (dx, dy) is the vertex's velocity in the kernel frame, and ``speed`` the length of that.
     """
     if omega == 0.0:
-        cos, sin = math.cos(yaw), math.sin(yaw)
-        dx, dy = cos * wx - sin * wy, sin * wx + cos * wy
         entry = traverse(free_distance, x, y, dx, dy, 0.0, end)
         return entry if entry <= end else math.inf
-    heading, curvature = yaw + math.atan2(wy, wx), omega / speed
-    along_x = Winding(x, heading, curvature)
-    along_y = Winding(y, heading - math.pi / 2.0, curvature)
-    return first_exit_of_coordinates(free_distance, along_x, along_y, end * speed) / speed
+    dx, dy, curvature = dx / speed, dy / speed, omega / speed
+    return first_exit_of_arc(free_distance, x, y, dx, dy, curvature, end * speed) / speed
 
 
 @kernel
-def _edge_contact(corner_distance, ax, ay, tx, ty, length, x, y, yaw, vx, vy, omega, end):
+def _edge_contact(corner_distance, ax, ay, tx, ty, length, x, y, cos, sin, vx, vy, omega, end):
     """
     Return the time up to ``end`` at which a corner meets a side of the footprint; inf for none.
 
@@ -179,28 +173,25 @@ def _edge_contact(corner_distance, ax, ay, tx, ty, length, x, y, yaw, vx, vy, om
     if omega != 0.0:
         longest = min(longest, PIECE_TURN / abs(omega))
     rows, columns = corner_distance.shape
-    s = 0.0
+    s, x0, y0, cos0, sin0 = 0.0, x, y, cos, sin
     while s < end:
-        x0, y0, yaw0 = moved(x, y, yaw, vx, vy, omega, s)
-        cos, sin = math.cos(yaw0), math.sin(yaw0)
-        p0x, p0y = x0 + cos * first_x - sin * first_y, y0 + sin * first_x + cos * first_y
-        q0x, q0y = x0 + cos * last_x - sin * last_y, y0 + sin * last_x + cos * last_y
+        p0x, p0y = x0 + cos0 * first_x - sin0 * first_y, y0 + sin0 * first_x + cos0 * first_y
+        q0x, q0y = x0 + cos0 * last_x - sin0 * last_y, y0 + sin0 * last_x + cos0 * last_y
         row = min(max(math.floor((p0y + q0y) / 2.0 + 0.5), 0), rows - 1)
         column = min(max(math.floor((p0x + q0x) / 2.0 + 0.5), 0), columns - 1)
         # The middle of the side is within half a cell of this grid point.
         skip = corner_distance[row, column] - 1.0 - half
         if skip > LEAST_SKIP:
             s += skip / speed
+            x0, y0, cos0, sin0 = carried(x, y, cos, sin, vx, vy, omega, s)
             continue
         piece = min(longest, end - s)
-        x1, y1, yaw1 = moved(x, y, yaw, vx, vy, omega, s + piece)
-        cos1, sin1 = math.cos(yaw1), math.sin(yaw1)
+        x1, y1, cos1, sin1 = carried(x, y, cos, sin, vx, vy, omega, s + piece)
         p1x, p1y = x1 + cos1 * first_x - sin1 * first_y, y1 + sin1 * first_x + cos1 * first_y
         q1x, q1y = x1 + cos1 * last_x - sin1 * last_y, y1 + sin1 * last_x + cos1 * last_y
         # An arc leaves its chord by an eighth of speed times turn; the sides' crossing, if the
         # centre of rotation is near the side, is twice as far from the nearest arc.
         rim = 0.375 * speed * abs(omega) * piece * piece + 10.0 * CLOSE
-        last = math.tan(omega * piece / 2.0) * 2.0 / omega if omega != 0.0 else piece
         least = math.inf
         lowest = min(min(p0y, q0y), min(p1y, q1y)) - rim
         highest = max(max(p0y, q0y), max(p1y, q1y)) + rim
@@ -221,8 +212,8 @@ def _edge_contact(corner_distance, ax, ay, tx, ty, length, x, y, yaw, vx, vy, om
                 if distance == 0:
                     dx, dy = column - x0, row - y0
                     met = _corner_contact(
-                        cos * dx + sin * dy - ax,
-                        cos * dy - sin * dx - ay,
+                        cos0 * dx + sin0 * dy - ax,
+                        cos0 * dy - sin0 * dx - ay,
                         ax,
                         ay,
                         tx,
@@ -232,8 +223,7 @@ def _edge_contact(corner_distance, ax, ay, tx, ty, length, x, y, yaw, vx, vy, om
                         vy,
                         omega,
                     )
-                    if met <= last * (1.0 + 1e-9) + 1e-12:
-                        least = min(least, met)
+                    least = min(least, met)
                     column += 1
                 else:
                     column += int(distance)
@@ -241,8 +231,9 @@ def _edge_contact(corner_distance, ax, ay, tx, ty, length, x, y, yaw, vx, vy, om
         if least < math.inf:
             if omega != 0.0:
                 least = math.atan(omega * least / 2.0) * 2.0 / omega
-            return min(s + least, end)
-        s += piece
+            if least <= piece * (1.0 + 1e-9) + 1e-12:
+                return min(s + least, end)
+        s, x0, y0, cos0, sin0 = s + piece, x1, y1, cos1, sin1
     return math.inf
 
 

@@ -41,6 +41,27 @@ def moved(x, y, yaw, vx, vy, omega, s):
     )
 
 
+@inlined
+def carried(x, y, cos, sin, vx, vy, omega, s):
+    """
+    Return the pose (x, y, cos, sin) after a twist was held for ``s``, as ``moved`` does.
+
+    The yaw is given by its cosine and sine, so that two functions of an angle are enough.
+    """
+    if omega == 0.0:
+        return x + s * (cos * vx - sin * vy), y + s * (sin * vx + cos * vy), cos, sin
+    half = omega * s / 2.0
+    half_cos, half_sin = math.cos(half), math.sin(half)
+    length = 2.0 * half_sin / omega
+    mid_cos, mid_sin = cos * half_cos - sin * half_sin, sin * half_cos + cos * half_sin
+    return (
+        x + length * (mid_cos * vx - mid_sin * vy),
+        y + length * (mid_sin * vx + mid_cos * vy),
+        mid_cos * half_cos - mid_sin * half_sin,
+        mid_sin * half_cos + mid_cos * half_sin,
+    )
+
+
 @kernel
 def orbit_poses(pose, twist, times):
     """Return the poses (k, 3) that ``pose`` (3,) has on the orbit of ``twist`` at ``times``."""

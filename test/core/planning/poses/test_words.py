@@ -128,7 +128,7 @@ def test_connections_end_at_the_pose_and_are_what_the_drive_can_do(name, way, rn
 def test_a_limit_leaves_out_no_connection_that_costs_less(name, way, rng):
     space = PoseSpace(GRID, RECTANGLE, **DRIVES[name])
     prices = module.Prices(2.0, 10.0, 3.0)
-    every, some = (interpreted(module.empty_connections)() for _ in range(2))
+    every, some = (module.empty_connections() for _ in range(2))
     n_compared = 0
     for scale in np.repeat([1.0, 10.0, 80.0], 5):
         a = rng.uniform((0, 0, -np.pi), (80, 80, np.pi))
@@ -142,3 +142,23 @@ def test_a_limit_leaves_out_no_connection_that_costs_less(name, way, rng):
         )
         n_compared += below.sum()
     assert n_compared > 15
+
+
+@pytest.mark.parametrize('rest', [0.0, 1e-16, 1e-9, 1e-3])
+def test_a_turn_in_place_costs_the_same_with_any_tiny_move(rest, rng):
+    prices = module.Prices(2.0, 10.0, 3.0)
+    for turn in rng.uniform(-np.pi, np.pi, 20):
+        for vx, vy in ((rest, 0.0), (-rest, 0.0), (0.0, rest), (rest, -rest)):
+            cost = interpreted(module.motion_cost)(prices, vx, vy, turn, 1.0)
+            assert cost == pytest.approx(3.0 * abs(turn), abs=2.0 * rest)
+
+
+def test_an_omnidirectional_robot_pays_for_a_turn_that_ends_beside_where_it_began(rng):
+    space = PoseSpace(GRID, RECTANGLE, **DRIVES['omnidirectional'])
+    prices = module.Prices(2.0, 10.0, 3.0)
+    found = module.empty_connections()
+    a = np.array([40.0, 40.0, 0.0])
+    for rest in (0.0, 1e-16, 1e-12, 1e-6):
+        b = a + (rest * rng.choice([-1.0, 1.0]), rest, 2.0)
+        interpreted(module.connect)(space.data, prices, a, b, 1.0, found)
+        assert found.costs[0] == pytest.approx(3.0 * 2.0, rel=1e-5)
