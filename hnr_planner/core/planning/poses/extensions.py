@@ -15,7 +15,7 @@ from hnr_planner.core.planning.poses.connections import (
     is_seen_blocked,
     N_KEPT,
 )
-from hnr_planner.core.planning.poses.steps import add_vertex, SHORTEST
+from hnr_planner.core.planning.poses.steps import add_vertex, has_room, SHORTEST
 from hnr_planner.core.spaces.poses.data import first_contact_of
 from hnr_planner.core.spaces.poses.motion import moved, wrapped
 from hnr_planner.core.spaces.primitives import contains
@@ -25,7 +25,8 @@ from hnr_planner.core.trees import NONE
 N_NEAREST = 3
 #: Number of connections between two poses that are tested, the cheapest first.
 N_TESTED = N_KEPT - 1
-#: Probability that an extension which meets an obstacle ends before it, where there is room.
+#: Probability that an extension which meets an obstacle ends before it, where there is room; a
+#: robot that needs room to get on always does.
 BEFORE = 0.5
 
 
@@ -66,10 +67,17 @@ def _choose(n, rng):
 def find_nearest(problem, trees, tree, size, pose):
     """Write the rows of a tree that are nearest to ``pose`` (3,); return their number."""
     n, nearest, gaps = 0, trees.nearest, trees.gaps
+    # The tree of the goal is reached from the pose, that of the start leads to it.
+    lead = problem.lead if tree == 0 else -problem.lead
+    lead_x, lead_y = lead * math.cos(pose[2]), lead * math.sin(pose[2])
     for row in range(size):
         if trees.owners[row] != tree:
             continue
         dx, dy = trees.poses[row, 0] - pose[0], trees.poses[row, 1] - pose[1]
+        if lead != 0.0:
+            yaw = trees.poses[row, 2]
+            dx += lead * math.cos(yaw) + lead_x
+            dy += lead * math.sin(yaw) + lead_y
         turn = abs(wrapped(trees.poses[row, 2] - pose[2]))
         gap = math.sqrt(dx * dx + dy * dy) + problem.weight * turn
         if n == N_NEAREST and gap >= gaps[n - 1]:
@@ -112,12 +120,15 @@ def extend(problem, trees, tree, size, rng):
             share = reached - problem.margin / length
             if share * length < SHORTEST:
                 return size, False
-            if uniform(rng) < BEFORE:
+            if problem.room > 0.0 or uniform(rng) < BEFORE:
                 share *= uniform(rng)
         at_x, at_y, at_yaw = moved(x, y, yaw, vx, vy, omega, share)
         pose = trees.poses[size]
         pose[0], pose[1], pose[2] = at_x, at_y, wrapped(at_yaw)
         if not contains(space, pose):
+            return size, False
+        is_last = reached <= 1.0 or k == found.sizes[chosen] - 1
+        if is_last and not has_room(problem, tree, pose):
             return size, False
         twist = trees.twists[size]
         twist[0], twist[1], twist[2] = share * vx, share * vy, share * omega

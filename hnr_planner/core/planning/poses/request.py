@@ -8,7 +8,7 @@ from hnr_planner.core.checks import check_number, check_point, check_seed, Float
 from hnr_planner.core.errors import RequestError
 from hnr_planner.core.kernels.streams import Stream, stream
 from hnr_planner.core.planning.poses.connections import Prices
-from hnr_planner.core.planning.poses.search import POSE_PLANNERS
+from hnr_planner.core.planning.poses.search import drives_ahead_only, POSE_PLANNERS, proposals_of
 from hnr_planner.core.planning.poses.trees import PoseProblem, Proposals
 from hnr_planner.core.spaces.poses.disc import Disc
 from hnr_planner.core.spaces.poses.drive import CAR, OMNIDIRECTIONAL
@@ -25,8 +25,10 @@ N_GOALS = 16
 #: of other footprints; and that of turning in place by 1 rad, in reaches.
 CHANGE, TURN = 1.0, 0.5
 #: Distance that counts as much as a turn of 1 rad for the nearest vertex, in turning radii or
-#: reaches.
-WEIGHT = 0.5
+#: reaches, and that for a car that must not reverse, for which a turn is a long way.
+WEIGHT, WEIGHT_AHEAD = 0.5, 1.0
+#: ``PoseProblem.lead`` and ``PoseProblem.room`` of a car that must not reverse, in turning radii.
+LEAD, ROOM = 0.7, 1.0
 #: Distance [cells] before a contact at which motions stop, at the least: a path that touches an
 #: obstacle but for rounding is of no use to a robot.
 STAND_OFF = 1e-3
@@ -87,6 +89,8 @@ class PoseRequest:
         space = self.space
         data = space.data
         lower, upper = space.kernel_bounds
+        is_ahead_only = drives_ahead_only(space)
+        unit = 1.0 / data.max_curvature if data.drive == CAR else data.reach
         return PoseProblem(
             data,
             self.prices,
@@ -94,8 +98,10 @@ class PoseRequest:
             upper,
             guide,
             disc.kernel_centre,
-            WEIGHT * (1.0 / data.max_curvature if data.drive == CAR else data.reach),
+            (WEIGHT_AHEAD if is_ahead_only else WEIGHT) * unit,
             max(space.margin, STAND_OFF),
+            LEAD * unit if is_ahead_only else 0.0,
+            ROOM * unit if is_ahead_only else 0.0,
         )
 
     def ends(self) -> Floats:
@@ -147,7 +153,7 @@ def check_pose_request(
         check_number('goal_radius', goal_radius, 0.0),
         min(check_number('heading_tolerance', heading_tolerance, 0.0), math.pi),
         name,
-        POSE_PLANNERS[name],
+        proposals_of(name, space),
         bool(simplify),
         check_number('reverse_penalty', reverse_penalty, 1.0),
         check_seed(seed),

@@ -19,6 +19,8 @@ from hnr_planner.core.planning.poses.trees import (
     PoseTrees,
     Proposals,
 )
+from hnr_planner.core.spaces.poses.drive import CAR
+from hnr_planner.core.spaces.poses.pose_space import PoseSpace
 from hnr_planner.core.trees import NONE
 import numpy as np
 from numpy.typing import NDArray
@@ -40,6 +42,21 @@ POSE_PLANNERS = {
     'hit_and_run_connect': Proposals(0.7, 0.05, 0.1, False, 2),
     'rrt_connect': Proposals(0.0, 1.0, 0.0, False, 2),
 }
+#: How ``hit_and_run_connect`` extends the trees of a car that must not reverse: the guide, a path
+#: of a disc that turns anywhere, often leads the wrong way from where the car has to turn round.
+CONNECT_AHEAD = Proposals(0.2, 0.6, 0.1, False, 2)
+
+
+def drives_ahead_only(space: PoseSpace) -> bool:
+    """Return whether the robot is a car that must not reverse, which never gets back."""
+    return space.data.drive == CAR and not space.data.reverse
+
+
+def proposals_of(name: str, space: PoseSpace) -> Proposals:
+    """Return how the planner of a name extends its trees in a space of poses."""
+    if name == 'hit_and_run_connect' and drives_ahead_only(space):
+        return CONNECT_AHEAD
+    return POSE_PLANNERS[name]
 
 
 @dataclass

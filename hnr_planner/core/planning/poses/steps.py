@@ -28,6 +28,26 @@ def add_vertex(trees, tree, parent, row):
 
 
 @kernel
+def has_room(problem, tree, pose):
+    """
+    Return whether the robot gets on from a pose (3,), a new vertex of a tree, by ``problem.room``.
+
+    A car that must not reverse gets on straight ahead or at full lock to either side, and back in
+    the same ways in the tree of the goal. Without room it would be stuck at the vertex.
+    """
+    if problem.room == 0.0:
+        return True
+    space, room = problem.space, problem.room
+    driven = 1.0 if tree == 0 else -1.0
+    for side in range(-1, 2):
+        bend = side * space.max_curvature
+        reached = first_contact_of(space, pose[0], pose[1], pose[2], driven, 0.0, bend, room)
+        if reached > room:
+            return True
+    return False
+
+
+@kernel
 def _draw_vertex(trees, tree, size, newest, rng):
     """Return the row of a random vertex of a tree, or of its ``newest``."""
     row = size - 1 if newest else math.floor(size * uniform(rng))
@@ -57,6 +77,8 @@ def hit_and_run_step(problem, trees, tree, size, from_newest, rng):
         s = lower + (upper - lower) * uniform(rng)
         point_on_line(space, x, u, s, y)
         if lower < s < upper and contains(space, y):
+            if not has_room(problem, tree, y):
+                return size
             for i in range(3):
                 trees.twists[size, i] = s * u[i]
             add_vertex(trees, tree, row, size)
@@ -71,7 +93,8 @@ def shuffle(problem, trees, tree, size, rng):
 
     This is how a driver turns in a tight place, or leaves one: a car goes ahead and back in turn,
     at full lock, mostly up to the contact; the other drives turn in place and move in turn. A
-    robot that must not drive backwards makes strokes ahead only, a car to the left and right.
+    robot that must not drive backwards makes strokes ahead only, a car to the left and right, and
+    a car of that kind ends none of them at a contact.
     """
     space, u = problem.space, trees.work[1]
     # The tree of the goal grows against the direction in which the robot drives.
@@ -103,11 +126,11 @@ def shuffle(problem, trees, tree, size, rng):
         end = first_contact_of(space, x[0], x[1], x[2], u[0], u[1], u[2], horizon)
         # The footprint moves by two units of length in a unit of time, at the most.
         end = min(end - problem.margin, horizon)
-        if uniform(rng) >= TO_CONTACT:
+        if problem.room > 0.0 or uniform(rng) >= TO_CONTACT:
             end *= uniform(rng)
         y = trees.poses[size]
         point_on_line(space, x, u, end, y)
-        if end < SHORTEST or not contains(space, y):
+        if end < SHORTEST or not contains(space, y) or not has_room(problem, tree, y):
             continue
         for i in range(3):
             trees.twists[size, i] = end * u[i]

@@ -78,6 +78,13 @@ class PoseProblem(NamedTuple):
         Distance [cells] that counts as much as a turn of 1 rad, for the nearest vertex.
     margin : float
         Distance [cells] before a contact at which a motion stops.
+    lead : float
+        How far [cells] ahead of the pose where a motion begins, and behind the pose where it ends,
+        the places are whose distance makes a vertex the nearest. Above 0 it prefers vertices from
+        which a car reaches the pose ahead without driving a loop.
+    room : float
+        How far [cells] the robot has to get on from a new vertex, ahead in the start's tree and
+        back in the goal's; 0 where it may reverse and gets out of any place as it came.
 
     """
 
@@ -89,6 +96,8 @@ class PoseProblem(NamedTuple):
     disc: Floats
     weight: float
     margin: float
+    lead: float
+    room: float
 
 
 class PoseTrees(NamedTuple):

@@ -57,6 +57,19 @@ def test_a_robot_that_must_not_reverse_drives_ahead_only(drive):
     check(space, plan(space, START, goal, seed=2, **PATIENT), goal=goal)
 
 
+def test_a_car_that_must_not_reverse_turns_round_where_there_is_room():
+    # It stands in a corridor that is 1.4 m wide, the goal is behind it, and the room is ahead.
+    blocked = np.ones((50, 160), dtype=bool)
+    blocked[20:34, 1:110] = blocked[2:48, 110:158] = False
+    space = PoseSpace(GridSpace.from_blocked(blocked, 0.1), RECTANGLE, **DRIVES['car ahead'])
+    start, goal = (6.0, 2.7, 0.0), (2.0, 2.7, -math.pi)
+    options = {'time_limit': math.inf, 'max_iterations': 300}
+    for seed in range(3):
+        result = plan(space, start, goal, seed=seed, **options)
+        check(space, result, start, goal)
+        assert result.path[:, 0].max() > 11.0
+
+
 def test_the_same_seed_gives_the_same_path_to_the_last_bit():
     space = hall(**DRIVES['car'])
     one, other, third = (plan(space, START, GOAL, seed=seed, **PATIENT) for seed in (3, 3, 4))
