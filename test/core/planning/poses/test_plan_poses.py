@@ -86,7 +86,7 @@ def test_a_path_as_found_is_free_as_well():
 
 
 def price(space, result):
-    """Return the cost of a car's path: changes of direction, and twice what is driven backwards."""
+    """Return the cost of a path of a car: length, reverse twice, and changes of direction."""
     driven = result.twists[:, 0]
     n_changes = np.count_nonzero(np.diff(np.sign(driven)))
     radius = space.drive.min_turning_radius
