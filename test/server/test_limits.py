@@ -55,8 +55,8 @@ def test_work_that_ends_is_left_alone() -> None:
     assert limits.within(lambda: 'done', 'cut') == 'done'
     with limits.enforced():
         limits.check()
-    assert 0.0 < limits.time_left <= 3600.0 and not limits.hold()
-    assert cancelled().hold() and not cancelled().time_is_up
+    assert 0.0 < limits.time_left <= 3600.0 and not limits.must_end()
+    assert cancelled().must_end() and not cancelled().time_is_up
 
 
 def test_a_search_gets_a_moment_even_when_the_time_is_up() -> None:
