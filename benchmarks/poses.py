@@ -10,6 +10,7 @@ from typing import NamedTuple
 
 from benchmarks.ompl.driver import MissingOmpl
 from benchmarks.ompl.poses import PoseSession, STEP
+from benchmarks.pinned import on_one_core
 from benchmarks.pose_courses import pose_courses, PoseCourse, RADIUS
 from benchmarks.progress import say, show
 from benchmarks.sections import Bench, milliseconds, ratio, Section, table, Verdict
@@ -89,7 +90,7 @@ def poses(bench: Bench) -> Section:
         session = PoseSession()
     except MissingOmpl as reason:
         return Section(title, f'**Missing.** {reason}')
-    with closing(session):
+    with closing(session), on_one_core():
         rows = [
             _measure(course, drive, session, bench.quick)
             for course in courses
@@ -106,7 +107,7 @@ def poses(bench: Bench) -> Section:
 
 
 def _measure(course: PoseCourse, drive: str, session: PoseSession, quick: bool) -> Row:
-    """Return the runs on one course, ours and OMPL's in turns."""
+    """Return the runs on one course: ours, then those of OMPL."""
     space, n = course.space(drive), len(course.requests)
     runs = n if n > 1 else (RUNS_QUICK if quick else RUNS)
     checker = PoseChecker(
@@ -116,38 +117,47 @@ def _measure(course: PoseCourse, drive: str, session: PoseSession, quick: bool) 
     if space.data.drive == CAR:
         session.use_space(space)
         row.ompl.update({name: [] for name in OMPL})
-    _ours(space, course.requests[0], 0)  # for the caches, not for the record
-    for k in range(runs):
+    show(f'{course.name}, {drive}')
+    requests = [course.requests[k % n] for k in range(runs)]
+    _first_path(space, requests[0], 0)  # for the caches, not for the record
+    # In a row: what else is done for a request would empty the caches.
+    firsts = [_first_path(space, ends, k) for k, ends in enumerate(requests)]
+    for k, ends in enumerate(requests):
         show(f'{course.name}, {drive}: run {k + 1} of {runs}')
-        ends = course.requests[k % n]
-        run, path, twists = _ours(space, ends, k)
+        run, path, twists = _shortened(space, ends, k, firsts[k])
         row.ours.append(run)
         if k < CHECKED and len(path):
             row.faults.extend(checker.collisions(path, twists, CHECK_STEP))
-        if k < PAIRS_OMPL:
-            for name, seconds in row.ompl.items():
-                answer = session.drive(name, LIMIT, space, ends)
-                seconds.append(answer.seconds if answer.length < math.inf else math.inf)
+    for name, seconds in row.ompl.items():
+        for ends in requests[:PAIRS_OMPL]:
+            answer = session.drive(name, LIMIT, space, ends)
+            seconds.append(answer.seconds if answer.length < math.inf else math.inf)
     say(f'{course.name}, {drive}: {milliseconds(row.first)} ms, faults {row.faults[:1]}')
     return row
 
 
-def _ours(
-    space: PoseSpace, ends: NDArray[np.float64], seed: int
-) -> tuple[Run, NDArray[np.float64], NDArray[np.float64]]:
-    """Return one run of ours, and its path and twists."""
+def _first_path(space: PoseSpace, ends: NDArray[np.float64], seed: int) -> float:
+    """Return the time to a path as it is found [s]; inf where none is found."""
     began = time.process_time()
-    raw = plan(space, *ends, seed=seed, simplify=False, time_limit=LIMIT)
-    between = time.process_time()
+    result = plan(space, *ends, seed=seed, simplify=False, time_limit=LIMIT)
+    seconds = time.process_time() - began
+    return seconds if result.status is PlannerStatus.SOLVED else math.inf
+
+
+def _shortened(
+    space: PoseSpace, ends: NDArray[np.float64], seed: int, first: float
+) -> tuple[Run, NDArray[np.float64], NDArray[np.float64]]:
+    """Return a run whose ``first`` path took that time [s], its shortened path and the twists."""
+    began = time.process_time()
     result = plan(space, *ends, seed=seed, time_limit=LIMIT)
-    whole = time.process_time() - between
-    if result.status is not PlannerStatus.SOLVED or raw.status is not PlannerStatus.SOLVED:
+    whole = time.process_time() - began
+    if result.status is not PlannerStatus.SOLVED or first == math.inf:
         return Run(math.inf, math.inf, math.inf, 0), np.empty((0, 3)), np.empty((0, 3))
     places = [space.disc.place(end) for end in ends]
     shortest = plan(space.disc.space, *places, algorithm='polyanya', time_limit=math.inf).length
     ways = np.sign(result.twists[result.twists[:, 0] != 0.0, 0])
     reversals = int(np.count_nonzero(ways[1:] != ways[:-1]))
-    run = Run(between - began, whole, result.length / shortest, reversals)
+    run = Run(first, whole, result.length / shortest, reversals)
     return run, result.path, result.twists
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Callable, Iterator
 from contextlib import closing
 from itertools import islice
@@ -51,8 +52,8 @@ class Run(NamedTuple):
     length: float
 
 
-#: Function that answers a request (2, dim): run ``k`` of a competitor.
-Runner = Callable[[int], Run]
+#: Function of the number of a run that returns processor time [s] and path (m, dim).
+Runner = Callable[[int], tuple[float, Floats]]
 
 
 class Row(NamedTuple):
@@ -114,39 +115,33 @@ def dimensions(bench: Bench) -> Section:
 
 def measure(name: str, session: DimensionsSession, n_instances: int, first_seed: int) -> Row:
     """Return the runs of everybody on instances of a problem, in turns."""
-    row = Row(name, {}, {})
+    row = Row(name, defaultdict(list), defaultdict(list))
     for instance in islice(instances(name, first_seed), n_instances):
         show(f'in n dimensions, {name}')
         session.enter(instance.course.words())
         space = instance.course.space()
         for who in OURS:
-            _record(row.first, who, _ours(space, instance, who, simplify=False))
+            row.first[who] += _in_a_row(instance, _ours(space, instance, who, simplify=False))
         for who in OMPL:
-            _record(row.first, who, _ompl(session, instance, who))
+            row.first[who] += _in_a_row(instance, _ompl(session, instance, who))
         for who in OURS:
-            _record(row.shortened, who, _ours(space, instance, who, simplify=True))
+            row.shortened[who] += _in_a_row(instance, _ours(space, instance, who, simplify=True))
         for who in OMPL:
-            _record(row.shortened, who, _ompl(session, instance, f'{who}+simplify'))
+            row.shortened[who] += _in_a_row(instance, _ompl(session, instance, f'{who}+simplify'))
         as_long = quantile(np.array([run.seconds for run in row.shortened[OURS[0]]]), 0.5)
         if as_long < LIMIT:
             again = _ompl(session, instance, f'{OMPL[0]}+shorten', as_long)
-            _record(row.shortened, f'{OMPL[0]}, as long', again)
+            row.shortened[f'{OMPL[0]}, as long'] += _in_a_row(instance, again)
     return row
-
-
-def _record(runs: dict[str, list[Run]], who: str, run: Runner) -> None:
-    """Run a competitor a few times in a row, and add all but the first to its runs."""
-    run(0)
-    runs.setdefault(who, []).extend(run(k) for k in range(1, RUNS))
 
 
 def _ours(space: Space, instance: Instance, algorithm: str, simplify: bool) -> Runner:
     """Return the runs of a planner of ours."""
 
-    def run(k: int) -> Run:
+    def run(k: int) -> tuple[float, Floats]:
         began = time.process_time()
         result = plan(space, *instance.request, algorithm=algorithm, seed=k, simplify=simplify)
-        return _judged(instance, time.process_time() - began, result.path)
+        return time.process_time() - began, result.path
 
     return run
 
@@ -155,7 +150,16 @@ def _ompl(
     session: DimensionsSession, instance: Instance, planner: str, limit: float = LIMIT
 ) -> Runner:
     """Return the runs of a planner of OMPL."""
-    return lambda _: _judged(instance, *session.plan(planner, limit, instance.request))
+    return lambda _: session.plan(planner, limit, instance.request)
+
+
+def _in_a_row(instance: Instance, run: Runner) -> list[Run]:
+    """
+    Return the runs of a competitor, all but the first.
+
+    They are judged at the end: to judge a path empties the caches that the next run needs.
+    """
+    return [_judged(instance, *done) for done in [run(k) for k in range(RUNS)][1:]]
 
 
 def _judged(instance: Instance, seconds: float, path: Floats) -> Run:

@@ -111,15 +111,18 @@ def attempt(
     if status is not PlannerStatus.SOLVED:
         return Attempt(status, search, path, math.inf, None, planner, bound, work)
     first = FirstSolution(working_time() - began, path_length(path), path)
-    candidates, kept = [], NOT_SEARCHED
     exact_budget = _budget_of_exact_search(request, budget, optimizing)
-    if exact_budget is not None and first.length > PROVED * bound:
+    if exact_budget is None:
+        improved = _improved(request, number, search, path, budget)
+        return Attempt(status, search, *improved, first, planner, bound, work)
+    candidates, kept = [], NOT_SEARCHED
+    if first.length > PROVED * bound:
         exact, shortest = shortest_path(request, exact_budget)
         bound, work = lower_bound(request, exact), work.plus(Work.of(exact))
         if shortest is not None:
             moved = _with_cost(request, shortest, exact_budget)
             candidates.append(Attempt(status, search, *moved, first, Polyanya.name, bound, work))
-    if exact_budget is not None and request.clearance > 0.0:
+    if request.clearance > 0.0:
         kept = shortest_kept_clear(request, exact_budget)
         work = work.plus(kept.work)
         if kept.path is not None:

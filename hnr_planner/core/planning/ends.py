@@ -101,27 +101,34 @@ class MovedRequest(NamedTuple):
         if result.status is not PlannerStatus.SOLVED:
             return result
         result = replace(result, goal_offset=self.goal_offset)
-        if self.escape == 0.0:
-            return result
-        first = result.first_solution
-        if first is not None:
-            first = first._replace(
-                length=first.length + self.escape, path=self._with_start(first.path)
-            )
-        return replace(
-            result,
-            path=self._with_start(result.path),
-            length=result.length + self.escape,
-            others=tuple(self._with_start(path) for path in result.others),
-            first_solution=first,
-            escape=self.escape,
-            lower_bound=result.lower_bound + self.escape,
-            clear_lower_bound=result.clear_lower_bound + self.escape,
-            next_lower_bound=result.next_lower_bound + self.escape,
-        )
+        return result if self.escape == 0.0 else led_from(result, self.start, self.escape)
 
-    def _with_start(self, path: Floats) -> Floats:
-        return np.vstack([self.start, path])
+
+def led_from(result: PlanResult, start: Floats, escape: float) -> PlanResult:
+    """
+    Return a solved result as one from another ``start`` (dim,), ``escape`` [m] from its own.
+
+    All paths begin with the segment from ``start``, and the lengths include it; the field
+    ``escape`` is its length. The samples are left as they are.
+    """
+
+    def with_start(path: Floats) -> Floats:
+        return np.vstack([start, path])
+
+    first = result.first_solution
+    if first is not None:
+        first = first._replace(length=first.length + escape, path=with_start(first.path))
+    return replace(
+        result,
+        path=with_start(result.path),
+        length=result.length + escape,
+        others=tuple(with_start(path) for path in result.others),
+        first_solution=first,
+        escape=escape,
+        lower_bound=result.lower_bound + escape,
+        clear_lower_bound=result.clear_lower_bound + escape,
+        next_lower_bound=result.next_lower_bound + escape,
+    )
 
 
 def move_ends(request: Request, allowance: Allowance) -> MovedRequest:

@@ -120,14 +120,19 @@ def make_planner(
         if settings:
             raise RequestError(f'settings {sorted(settings)} go with the name of a planner only')
         return algorithm
-    entry = next((entry for entry in entries if entry.name == algorithm), None)
-    if entry is None:
-        names = ', '.join(entry.name for entry in entries)
-        raise RequestError(f'algorithm must be one of {names}, got {algorithm!r}')
-    kind = entry.load()
+    kind = _entry_named(algorithm, entries).load()
     if settings:
         _check_settings(kind, settings)
     return kind(**settings)
+
+
+def _entry_named(name: str, entries: Sequence[PlannerEntry]) -> PlannerEntry:
+    """Return the one of ``entries`` with a name, or raise RequestError where there is none."""
+    for entry in entries:
+        if entry.name == name:
+            return entry
+    names = ', '.join(entry.name for entry in entries)
+    raise RequestError(f'algorithm must be one of {names}, got {name!r}')
 
 
 def _check_settings(kind: type[Any], settings: dict[str, Any]) -> None:

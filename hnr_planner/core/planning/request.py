@@ -1,8 +1,8 @@
 """Validation of planning requests, and the outcome of the requests that need no search."""
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 import math
-from typing import Any
+from typing import Any, NamedTuple
 
 from hnr_planner.core.cancellation import Event
 from hnr_planner.core.checks import check_count, check_number, check_point, check_seed, Floats
@@ -33,8 +33,7 @@ ROUNDS_PER_SECOND, PATIENCE = 300, 5
 CLEARANCE_MAX = 1e6
 
 
-@dataclass(frozen=True)
-class Effort:
+class Effort(NamedTuple):
     """
     Limits on the work for one request, as its caller gave them.
 
@@ -122,8 +121,7 @@ def check_effort(
     )
 
 
-@dataclass(frozen=True)
-class Request:
+class Request(NamedTuple):
     """
     A validated request for a path.
 
@@ -182,7 +180,7 @@ class Request:
         start, goal = (b if a is None else a for a, b in ((start, self.start), (goal, self.goal)))
         goal_radius = self.goal_radius if goal_radius is None else goal_radius
         problem = make_problem(self.space, start, goal, goal_radius)
-        return replace(self, start=start, goal=goal, goal_radius=goal_radius, problem=problem)
+        return self._replace(start=start, goal=goal, goal_radius=goal_radius, problem=problem)
 
 
 def check_request(

@@ -1,6 +1,5 @@
 """Exact searches for a request on a grid: the shortest path, and that which keeps a clearance."""
 
-from dataclasses import replace
 import math
 from typing import Any, NamedTuple
 
@@ -90,7 +89,7 @@ def shortest_kept_clear(request: Request, budget: Budget) -> KeptClear:
     space: Any = request.space
     clear = kept_clear(space, request.clearance)
     problem = make_problem(clear, request.start, request.goal, request.goal_radius)
-    kept = replace(request, space=clear, problem=problem)
+    kept = request._replace(space=clear, problem=problem)
     status, _ = outcome_without_search(kept) or (None, '')
     if status is PlannerStatus.SOLVED:  # by the segment: no start in the goal region is searched
         return KeptClear(NOTHING, np.array((request.start, request.goal)), request.straight_length)

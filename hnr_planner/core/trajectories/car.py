@@ -6,7 +6,6 @@ heading, at a position. It is driven as fast as the car can, from rest to rest b
 direction and at the end.
 """
 
-from dataclasses import replace
 import math
 from typing import Any
 from weakref import WeakKeyDictionary
@@ -102,7 +101,7 @@ def plan_car(
 
     def path_from(begin: Floats) -> PlanResult:
         spent = working_time() - began
-        left = replace(effort, time_limit=max(effort.time_limit - spent, 0.0))
+        left = effort._replace(time_limit=max(effort.time_limit - spent, 0.0))
         return plan_poses(poses, begin, pose, left, **options)
 
     result = path_from(state[:3])

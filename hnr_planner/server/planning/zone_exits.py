@@ -5,6 +5,7 @@ import math
 
 from hnr_planner.core import PlannerStatus, PlanResult
 from hnr_planner.core.checks import Floats
+from hnr_planner.core.planning.ends import led_from
 from hnr_planner.server.map.keepout import nearest_exit
 from hnr_planner.server.map.map_store import MapSnapshot
 from hnr_planner.server.requests.plan_request import PlanRequest
@@ -33,24 +34,7 @@ def led_out(result: PlanResult, start: tuple[float, float], exit_point: Floats) 
     """
     escape = math.dist(start, exit_point)
     message = f'{result.message}; the start is in a keepout zone and was led out by {escape:.4g} m'
+    result = replace(result, message=message)
     if result.status is not PlannerStatus.SOLVED:
-        return replace(result, message=message)
-
-    def from_start(path: Floats) -> Floats:
-        return np.vstack([start, path])
-
-    first = result.first_solution
-    if first is not None:
-        first = first._replace(length=first.length + escape, path=from_start(first.path))
-    return replace(
-        result,
-        message=message,
-        path=from_start(result.path),
-        others=tuple(from_start(path) for path in result.others),
-        length=result.length + escape,
-        lower_bound=result.lower_bound + escape,
-        clear_lower_bound=result.clear_lower_bound + escape,
-        next_lower_bound=result.next_lower_bound + escape,
-        first_solution=first,
-        escape=escape,
-    )
+        return result
+    return led_from(result, np.array(start), escape)

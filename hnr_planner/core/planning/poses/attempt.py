@@ -12,7 +12,7 @@ from hnr_planner.core.kernels.streams import uniform
 from hnr_planner.core.planning.poses.connections import N_MOTIONS
 from hnr_planner.core.planning.poses.extensions import free_connection
 from hnr_planner.core.planning.poses.guide import write_pose_along
-from hnr_planner.core.planning.poses.steps import add_vertex
+from hnr_planner.core.planning.poses.steps import add_vertex, driving_sign
 from hnr_planner.core.spaces.grid.traversal import traverse
 from hnr_planner.core.spaces.poses.motion import moved, wrapped
 from hnr_planner.core.spaces.primitives import contains
@@ -66,7 +66,7 @@ def _extend_along(problem, trees, tree, row, size, rng):
     The parts of the guide that are tried become shorter, down to a stride.
     """
     pose, part = trees.work[0], trees.progress[1] - trees.progress[0]
-    driven = 1.0 if tree == 0 else -1.0
+    driven = driving_sign(tree)
     while part > problem.space.stride:
         part *= LEAST_PART + (LARGEST_PART - LEAST_PART) * uniform(rng)
         along = trees.progress[tree] + driven * part

@@ -15,7 +15,7 @@ from hnr_planner.core.planning.poses.connections import (
     is_seen_blocked,
     N_KEPT,
 )
-from hnr_planner.core.planning.poses.steps import add_vertex, has_room, SHORTEST
+from hnr_planner.core.planning.poses.steps import add_vertex, driving_sign, has_room, SHORTEST
 from hnr_planner.core.spaces.poses.data import first_contact_of
 from hnr_planner.core.spaces.poses.motion import moved, wrapped
 from hnr_planner.core.spaces.primitives import contains
@@ -101,7 +101,7 @@ def extend(problem, trees, tree, size, rng):
     space, found, target = problem.space, trees.found, trees.work[0]
     # Mostly from the nearest vertex by the cheapest connection, which may be blocked for ever.
     row = trees.nearest[_choose(find_nearest(problem, trees, tree, size, target), rng)]
-    driven = 1.0 if tree == 0 else -1.0
+    driven = driving_sign(tree)
     connect(space, problem.prices, trees.poses[row], target, driven, found)
     n_found = 0
     while n_found < N_KEPT and found.costs[n_found] < math.inf:

@@ -2,7 +2,7 @@
 
 import math
 
-from hnr_planner.core.kernels.kernel import kernel
+from hnr_planner.core.kernels.kernel import inlined, kernel
 from hnr_planner.core.kernels.streams import uniform
 from hnr_planner.core.sampling.draws import REDRAWS_MAX
 from hnr_planner.core.spaces.lines import draw_direction, point_on_line
@@ -18,6 +18,12 @@ SHORTEST = 0.1
 N_STROKES, STROKE_TURN, TO_CONTACT = 12, 0.5 * math.pi, 0.7
 #: Probability that a shuffle begins at a root, where the robot may be hemmed in.
 AT_ROOT = 0.5
+
+
+@inlined
+def driving_sign(tree):
+    """Return 1.0 for the start's tree, and -1.0 for the goal's, which grows against driving."""
+    return 1.0 if tree == 0 else -1.0
 
 
 @kernel
@@ -38,7 +44,7 @@ def has_room(problem, tree, pose):
     if problem.room == 0.0:
         return True
     space, room = problem.space, problem.room
-    driven = 1.0 if tree == 0 else -1.0
+    driven = driving_sign(tree)
     for side in range(-1, 2):
         bend = side * space.max_curvature
         reached = first_contact_of(space, pose[0], pose[1], pose[2], driven, 0.0, bend, room)
@@ -97,8 +103,7 @@ def shuffle(problem, trees, tree, size, rng):
     a car of that kind ends none of them at a contact.
     """
     space, u = problem.space, trees.work[1]
-    # The tree of the goal grows against the direction in which the robot drives.
-    driven = 1.0 if tree == 0 else -1.0
+    driven = driving_sign(tree)
     row = _draw_vertex(trees, tree, size, False, rng)
     if uniform(rng) < AT_ROOT:
         while trees.parents[row] != NONE:
