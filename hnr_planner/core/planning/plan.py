@@ -1,29 +1,23 @@
 """
 ``plan``: find a path for one request.
 
-The planners search and count their work. ``plan`` validates the request, enforces its limits and
-builds the result.
+The planners search and count their work. ``plan`` validates the request, enforces its limits, and
+has the result built (``build_result``).
 """
 
 from dataclasses import replace
-import math
 from typing import Any
 
 from hnr_planner.core.cancellation import Event
 from hnr_planner.core.errors import RequestError
 from hnr_planner.core.kernels.clock import working_time
 from hnr_planner.core.kernels.kernel import interpreted_calls
-from hnr_planner.core.lengths import path_length
 from hnr_planner.core.planning.alternatives.alternatives import (
     check_alternatives,
     with_alternatives,
 )
-from hnr_planner.core.planning.attempts import (
-    Attempt,
-    attempt,
-    optimize,
-    with_clearance,
-)
+from hnr_planner.core.planning.attempts import attempt, optimize
+from hnr_planner.core.planning.build_result import result_of_search, result_without_search
 from hnr_planner.core.planning.ends import Allowance, check_allowance, move_ends, MovedRequest
 from hnr_planner.core.planning.limits import Budget
 from hnr_planner.core.planning.planner import Planner
@@ -35,18 +29,10 @@ from hnr_planner.core.planning.request import (
     Effort,
     Request,
 )
-from hnr_planner.core.planning.result import (
-    FirstSolution,
-    PlannerStatus,
-    PlanResult,
-    proof,
-    proof_of_clearance,
-)
+from hnr_planner.core.planning.result import PlannerStatus, PlanResult
 from hnr_planner.core.planning.tiers import with_remark
 from hnr_planner.core.spaces.poses.pose_space import PoseSpace
 from hnr_planner.core.spaces.space import Space
-from hnr_planner.core.trees import NONE
-import numpy as np
 from numpy.typing import ArrayLike
 
 #: Arguments of ``plan_trajectory`` that ``plan`` does not have.
@@ -187,9 +173,9 @@ def plan(
     moved = _move_ends_within(budget, request, allowance)
     request = moved.request
     if moved.outcome is not None:
-        result = _result_without_search(request, *moved.outcome, budget, began)
+        result = result_without_search(request, *moved.outcome, budget, began)
     else:
-        result = _result_of_search(request, effort, budget, began)
+        result = _search(request, effort, budget, began)
     if n_paths > 1 and result.status is PlannerStatus.SOLVED:
         found = result
         result = budget.within(
@@ -222,9 +208,7 @@ def _move_ends_within(budget: Budget, request: Request, allowance: Allowance) ->
     return MovedRequest(request, (status, status.value), request.start)
 
 
-def _result_of_search(
-    request: Request, effort: Effort, budget: Budget, began: float
-) -> PlanResult:
+def _search(request: Request, effort: Effort, budget: Budget, began: float) -> PlanResult:
     """
     Search for a path and return the result.
 
@@ -238,77 +222,4 @@ def _result_of_search(
         rounds, patience = effort.optimize_rounds, effort.optimize_patience
         best, work = optimize(request, best, rounds, patience, optimizing, began)
         budget.cut = budget.cut or optimizing.cut
-    length = path_length(best.path) if len(best.path) else math.inf
-    samples = request.space.from_kernel(best.search.samples)
-    samples[0] = request.start
-    return PlanResult(
-        status=best.status,
-        message=_message(request, best, length, work.iterations, began),
-        planner=best.planner,
-        path=best.path,
-        length=length,
-        samples=samples,
-        parents=best.search.parents.copy(),
-        iterations=work.iterations,
-        counts=work.counts,
-        elapsed=working_time() - began,
-        seed=request.seed,
-        cut_by_time=budget.cut,
-        first_solution=first,
-        lower_bound=best.lower_bound,
-        clear_lower_bound=best.kept_clear.lower_bound,
-    )
-
-
-def _result_without_search(
-    request: Request, status: PlannerStatus, message: str, budget: Budget, began: float
-) -> PlanResult:
-    """
-    Return the result of a request whose outcome, ``status`` and ``message``, needs no search.
-
-    The path of a solved one is the straight segment to an exact goal, or the start twice where the
-    goal has a radius, moved away from walls where a clearance is requested.
-    """
-    path, length, samples, first = np.empty((0, len(request.start))), math.inf, 0, None
-    if status is PlannerStatus.SOLVED:
-        end = request.goal if request.goal_radius == 0.0 else request.start
-        path, samples = np.array((request.start, end)), 1
-        first = FirstSolution(working_time() - began, path_length(path), path)
-        path = with_clearance(request, path, budget)
-        length = path_length(path)
-    open_ended = (PlannerStatus.SOLVED, PlannerStatus.TIMEOUT, PlannerStatus.CANCELLED)
-    bound = request.straight_length if status in open_ended else math.inf
-    return PlanResult(
-        status=status,
-        message=message,
-        planner=request.planner.name,
-        path=path,
-        length=length,
-        samples=path[:samples].copy(),
-        parents=np.array([NONE] * samples, dtype=np.int64),
-        iterations=0,
-        counts={},
-        elapsed=working_time() - began,
-        seed=request.seed,
-        cut_by_time=budget.cut,
-        first_solution=first,
-        lower_bound=bound,
-    )
-
-
-def _message(request: Request, best: Attempt, length: float, iterations: int, began: float) -> str:
-    """
-    Return a description of how the search of ``best`` ended.
-
-    It states ``length`` [m], that of the path, and ``iterations``, those of all searches.
-    """
-    if best.status is PlannerStatus.SOLVED and best.first is not None:
-        found = f'path of {length:.6g} m with {len(best.path)} vertices'
-        as_found = request.simplify and not best.search.taut and best.path is best.first.path
-        nothing = ', of which no shortcut is free' if as_found and len(best.path) > 2 else ''
-        proved = proof(length, best.lower_bound, request.straight_length) + proof_of_clearance(
-            request.clearance, best.keeps_clearance, length, best.kept_clear.lower_bound
-        )
-        return f'{found} after {iterations} transitions{nothing}{proved}'
-    seconds = working_time() - began
-    return f'{best.status.value} ({iterations} transitions, {seconds:.3g} s)'
+    return result_of_search(request, best, first, work, budget, began)

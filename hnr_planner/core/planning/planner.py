@@ -188,7 +188,9 @@ def to_goal(problem: Problem, points: Floats) -> Floats:
 
     Where the goal has no radius, the goal itself is added as the last point.
     """
-    return points if problem.goal_radius > 0.0 else np.vstack([points, problem.goal])
+    if problem.goal_radius > 0.0:
+        return points
+    return np.concatenate([points, problem.goal[np.newaxis]])
 
 
 def with_capacity(array: NDArray[Any], rows: int) -> NDArray[Any]:

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from enum import Enum
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple, Self
 
 from hnr_planner.core.checks import check_positive, Floats
 from hnr_planner.core.errors import RequestError
@@ -144,6 +144,41 @@ class SearchResult:
     seed: int
     cut_by_time: bool
     first_solution: FirstSolution | None
+
+    @classmethod
+    def without_search(
+        cls,
+        status: PlannerStatus,
+        message: str,
+        *,
+        planner: str,
+        dim: int,
+        seed: int,
+        elapsed: float,
+        cut_by_time: bool = False,
+        **more: Any,
+    ) -> Self:
+        """
+        Return the result of a request in which nothing was searched and no path was found.
+
+        ``dim`` is that of the points, and ``more`` are fields of the class itself.
+        """
+        return cls(
+            status=status,
+            message=message,
+            planner=planner,
+            path=np.empty((0, dim)),
+            length=math.inf,
+            samples=np.empty((0, dim)),
+            parents=np.empty(0, dtype=np.int64),
+            iterations=0,
+            counts={},
+            elapsed=elapsed,
+            seed=seed,
+            cut_by_time=cut_by_time,
+            first_solution=None,
+            **more,
+        )
 
     def __repr__(self) -> str:
         """Return the status, the length and the numbers of vertices, samples and transitions."""

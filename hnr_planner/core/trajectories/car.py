@@ -222,18 +222,11 @@ def _driven(result: PlanResult, trajectory: Trajectory | None, began: float) -> 
 
 def _failure(status: PlannerStatus, message: str, seed: int, began: float) -> TrajectoryResult:
     """Return the result of a request that needs no search."""
-    return TrajectoryResult(
-        status=status,
-        message=message,
+    return TrajectoryResult.without_search(
+        status,
+        message,
         planner='hit_and_run_connect',
-        path=np.empty((0, 2)),
-        length=math.inf,
-        samples=np.empty((0, 2)),
-        parents=np.empty(0, dtype=np.int64),
-        iterations=0,
-        counts={},
-        elapsed=working_time() - began,
+        dim=2,
         seed=seed,
-        cut_by_time=False,
-        first_solution=None,
+        elapsed=working_time() - began,
     )

@@ -125,5 +125,5 @@ def _path(space: GridSpace, corners: Corners, search: TautSearch, label: int) ->
     states = search.states[rows_to(search.parents, label)[:-1]]  # the last one is AT_GOAL
     places = corners.places[states // 2]
     beside = places[:, X:STEP_X] + space.margin * places[:, STEP_X:]
-    points = np.vstack([search.ends[:1], beside, search.ends[1:]])
+    points = np.concatenate([search.ends[:1], beside, search.ends[1:]])
     return space.from_kernel(step_aside(space.data, points, space.margin))

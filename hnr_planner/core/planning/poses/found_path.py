@@ -43,6 +43,10 @@ class PosePath(NamedTuple):
     cost: float
 
 
+#: What stands for the path where none was found.
+NO_PATH = PosePath(np.empty((0, 3)), np.empty((0, 3)), math.inf, math.inf)
+
+
 @kernel
 def joined_path(trees: PoseTrees, first: int, last: int, k: int) -> tuple[Floats, Floats]:
     """

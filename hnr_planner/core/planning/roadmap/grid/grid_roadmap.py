@@ -91,7 +91,7 @@ class GridRoadmap:
             return Polyanya().for_space(self.space).start(problem, rng)
         ends = problem.start[np.newaxis], problem.goal[np.newaxis]
         lengths, _, bends = shortest_paths(self.graph, problem.space, *ends)
-        points = np.vstack([problem.start, self._beside(bends), problem.goal])
+        points = np.concatenate([ends[0], self._beside(bends), ends[1]])
         path = step_aside(problem.space, points, problem.margin)
         return SolvedSearch(path, True, lengths[0])
 

@@ -1,0 +1,188 @@
+"""
+Searches for one request for a path of poses: the first, and further ones for a cheaper path.
+
+Each has its own random streams, so that its result does not depend on the searches before it.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+from hnr_planner.core.checks import Floats
+from hnr_planner.core.kernels.clock import working_time
+from hnr_planner.core.kernels.streams import Stream
+from hnr_planner.core.planning.limits import Budget, run
+from hnr_planner.core.planning.planner import Work
+from hnr_planner.core.planning.poses.connections import cost_of, empty_connections
+from hnr_planner.core.planning.poses.found_path import path_for_caller, PosePath
+from hnr_planner.core.planning.poses.guide import detour_guide, shortest_guide
+from hnr_planner.core.planning.poses.request import PoseRequest
+from hnr_planner.core.planning.poses.search import PoseSearch
+from hnr_planner.core.planning.poses.shorten import shorten_path, SPARE_ROWS
+from hnr_planner.core.planning.poses.trees import PoseProblem
+from hnr_planner.core.planning.result import FirstSolution, PlannerStatus
+from hnr_planner.core.spaces.poses.disc import Disc
+import numpy as np
+
+#: Purposes of random streams.
+SEARCH, SHORTEN = 0, 1
+#: Sections that are tried at once, for each motion of a path and at least.
+TRIES_PER_MOTION, TRIES_MIN = 4, 40
+#: Rounds of tries for one path, and consecutive rounds that lower the cost by less than the
+#: fraction ``LEAST_GAIN`` after which it counts as short.
+ROUNDS_MAX, PATIENCE, LEAST_GAIN = 60, 3, 2e-3
+#: Largest number of searches, where the caller's coordinates round a path into an obstacle.
+RESTARTS_MAX = 20
+
+
+class PoseAttempt(NamedTuple):
+    """
+    One search, and the path that resulted from it.
+
+    Attributes
+    ----------
+    number : int
+        Number of the search, which selects its random streams.
+    status : PlannerStatus
+        How the search ended.
+    search : PoseSearch
+        The search in the state in which it ended.
+    path : PosePath or None
+        The path, shortened where the request asks for it; None where there is none that is free
+        in the caller's coordinates.
+    first : FirstSolution or None
+        The path as found; None where there is no path.
+
+    """
+
+    number: int
+    status: PlannerStatus
+    search: PoseSearch
+    path: PosePath | None
+    first: FirstSolution | None
+
+
+@dataclass(frozen=True)
+class PoseSearches:
+    """
+    The searches for one request.
+
+    Attributes
+    ----------
+    request : PoseRequest
+        The request.
+    disc : Disc
+        The largest disc in the footprint, whose shortest path guides the searches.
+    roots : (k, 3)
+        The start, then the goals that may be reached, kernel frame.
+    budget : Budget
+        Limits on the work for the request.
+    began : float
+        Time at which the call began, on the clock of ``working_time`` [s].
+
+    """
+
+    request: PoseRequest
+    disc: Disc
+    roots: Floats
+    budget: Budget
+    began: float
+
+    def until_free(self) -> tuple[PoseAttempt, Work]:
+        """
+        Search until a path is free in the caller's coordinates; return that search, and the work.
+
+        A path that these round into an obstacle does not count: then the search is repeated, at
+        most ``RESTARTS_MAX`` times in all. The path is None where none was found.
+        """
+        found = self._attempt(0, self.budget)
+        work = Work.of(found.search)
+        while found.path is None and found.status is PlannerStatus.SOLVED:
+            if found.number + 1 == RESTARTS_MAX:
+                return found._replace(status=PlannerStatus.ITERATION_LIMIT), work
+            found = self._attempt(found.number + 1, self.budget)
+            work = work.plus(Work.of(found.search))
+        return found, work
+
+    def optimize(
+        self, found: PoseAttempt, work: Work, rounds: float, budget: Budget
+    ) -> tuple[PoseAttempt, Work]:
+        """
+        Search on for cheaper paths; return the best, and the work of all searches.
+
+        The rounds end once the number of a search would be above ``rounds`` or a limit of the
+        budget is met.
+        """
+        best, path, number = found, found.path, found.number + 1
+        while number <= rounds and budget.stop() is None:
+            again = self._attempt(number, budget)
+            work, number = work.plus(Work.of(again.search)), number + 1
+            if path is not None and again.path is not None and again.path.cost < path.cost:
+                best, path = again, again.path
+        return best, work
+
+    def _attempt(self, number: int, budget: Budget) -> PoseAttempt:
+        """Search once within a budget, and shorten the path where the request asks for it."""
+        request, rng = self.request, self.request.stream(SEARCH, number)
+        search = PoseSearch(self._problem, request.proposals, self.roots, rng, self._other_guide)
+        status = run(search, budget)
+        path = _checked(request, *search.path) if status is PlannerStatus.SOLVED else None
+        if path is None:
+            return PoseAttempt(number, status, search, None, None)
+        first = FirstSolution(working_time() - self.began, path.length, path.poses)
+        if request.simplify and path.cost > 0.0:
+            path = _shortened(request, path, request.stream(SHORTEN, number), budget)
+        return PoseAttempt(number, status, search, path, first)
+
+    @cached_property
+    def _guide(self) -> Floats:
+        """The shortest path (k, 3) of the disc; (0, 3) for a planner that follows no guide."""
+        if self.request.proposals.guided == 0.0:
+            return np.empty((0, 3))
+        return shortest_guide(self.disc, self.roots[0], self.roots[1], self.budget)
+
+    @cached_property
+    def _problem(self) -> PoseProblem:
+        """The problem in the kernel frame."""
+        return self.request.problem(self._guide, self.disc)
+
+    def _other_guide(self, turn: int, stuck: Floats) -> Floats:
+        """Return the guide (k, 3) after ``turn`` others, mostly one around the point ``stuck``."""
+        if turn % 3 == 0:
+            return self._guide
+        request, stride = self.request, self.request.space.data.stride
+        start, goal = self.roots[0], self.roots[1]
+        return detour_guide(
+            self.disc, start, goal, stuck, stride, self.budget, request.seed + turn
+        )
+
+
+def _checked(request: PoseRequest, poses: Floats, twists: Floats) -> PosePath | None:
+    """Return a path of the kernel frame in the caller's, or None where it is not free there."""
+    space = request.space
+    *path, is_free = path_for_caller(
+        space.data, space.frame, request.prices, poses, twists, request.start, request.goal
+    )
+    return PosePath(*path) if is_free else None
+
+
+def _shortened(request: PoseRequest, path: PosePath, rng: Stream, budget: Budget) -> PosePath:
+    """Return the path with sections replaced by cheaper ones, within the budget."""
+    space, n = request.space, len(path.twists)
+    rows = 2 * n + 4 * SPARE_ROWS
+    poses, twists = np.zeros((rows + 1, 3)), np.zeros((rows, 3))
+    poses[: n + 1] = space.to_kernel(path.poses)
+    twists[:n] = space.twists_to_kernel(path.twists)
+    spare = np.zeros((rows + 1, 3)), np.zeros((rows, 3))
+    found, prices = empty_connections(), request.prices
+    cost, idle = path.cost, 0
+    for _ in range(ROUNDS_MAX):
+        if idle >= PATIENCE or budget.stop() is not None:
+            break
+        tries = max(TRIES_MIN, TRIES_PER_MOTION * n)
+        n = int(shorten_path(space.data, prices, poses, twists, n, *spare, found, rng, tries))
+        lower = float(cost_of(prices, twists, n, 1.0))
+        idle = 0 if lower < (1.0 - LEAST_GAIN) * cost else idle + 1
+        cost = lower
+    shorter = _checked(request, poses[: n + 1].copy(), twists[:n].copy())
+    return path if shorter is None or shorter.cost >= path.cost else shorter
