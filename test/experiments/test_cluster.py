@@ -26,12 +26,15 @@ import pytest
 pytest.importorskip('distributed', reason='the extra cluster is not installed')
 
 ROOT = Path(__file__).resolve().parents[2]
-#: Program that conducts an experiment on a cluster, with more runs than can end.
+#: Program that conducts an experiment on a cluster, with more runs than can end. It takes SIGINT
+#: also where whatever started the tests ignores it.
 TO_BE_INTERRUPTED = """
 from pathlib import Path
+import signal
 from test.experiments.test_cluster import gated
 from hnr_planner.experiments.cluster import on_cluster
 from hnr_planner.experiments.conduct import conduct
+signal.signal(signal.SIGINT, signal.default_int_handler)
 with on_cluster({address!r}):
     conduct(gated({gate!r}), 4, Path({folder!r}))
 """
