@@ -5,20 +5,20 @@ Each attempt has its own random streams, so that its result does not depend on t
 duration of earlier attempts.
 """
 
-from collections.abc import Callable
 import math
-from typing import NamedTuple, TypeVar
+from typing import NamedTuple
 
 from hnr_planner.core.checks import Floats
 from hnr_planner.core.kernels.clock import working_time
 from hnr_planner.core.lengths import path_length
-from hnr_planner.core.planning.limits import Budget, run
-from hnr_planner.core.planning.planner import PathSearch, Search, Work
+from hnr_planner.core.planning.limits import Budget
+from hnr_planner.core.planning.planner import PathSearch, Work
 from hnr_planner.core.planning.planners.auto import Auto
 from hnr_planner.core.planning.planners.polyanya import Polyanya
 from hnr_planner.core.planning.postprocessing.clearance import increase_clearance, path_cost
 from hnr_planner.core.planning.postprocessing.simplify import shorten
 from hnr_planner.core.planning.request import Request
+from hnr_planner.core.planning.restarts import search_until_free
 from hnr_planner.core.planning.result import FirstSolution, PlannerStatus, PROVED
 from hnr_planner.core.planning.shortest import (
     in_caller_s_frame,
@@ -31,15 +31,9 @@ from hnr_planner.core.planning.shortest import (
 from hnr_planner.core.spaces.grid.grid_space import GridSpace
 import numpy as np
 
-SearchType = TypeVar('SearchType', bound=Search)
-Found = TypeVar('Found')
-
 #: Least decrease of the cost of the best path, as a fraction of that cost, for which a further
 #: search counts as a gain.
 LEAST_GAIN = 1e-3
-#: Largest number of searches of one attempt. A search is repeated where its path is not free in
-#: the caller's coordinates.
-RESTARTS_MAX = 100
 #: Purposes of random streams: to search for a path, and to shorten the path found.
 SEARCH, SHORTEN = 0, 1
 
@@ -112,28 +106,41 @@ def attempt(
         return Attempt(status, search, path, math.inf, None, planner, bound, work)
     first = FirstSolution(working_time() - began, path_length(path), path)
     exact_budget = _budget_of_exact_search(request, budget, optimizing)
-    if exact_budget is None:
-        improved = _improved(request, number, search, path, budget)
-        return Attempt(status, search, *improved, first, planner, bound, work)
-    candidates, kept = [], NOT_SEARCHED
-    if first.length > PROVED * bound:
+    if exact_budget is not None:
+        found = Attempt(status, search, path, first.length, first, planner, bound, work)
+        return _best_of_exact(request, number, found, budget, exact_budget)
+    improved = _improved(request, number, search, path, budget)
+    return Attempt(status, search, *improved, first, planner, bound, work)
+
+
+def _best_of_exact(
+    request: Request, number: int, found: Attempt, budget: Budget, exact_budget: Budget
+) -> Attempt:
+    """
+    Return the attempt of least cost after exact searches on a grid.
+
+    They are for the shortest path, unless that of ``found`` is straight, and for the one that
+    keeps the clearance requested, if any. Where they find nothing, and with a clearance in any
+    case, the path of ``found`` is improved as without them.
+    """
+    candidates, bound, work, kept = [], found.lower_bound, found.work, NOT_SEARCHED
+    if found.cost > PROVED * bound:
         exact, shortest = shortest_path(request, exact_budget)
         bound, work = lower_bound(request, exact), work.plus(Work.of(exact))
         if shortest is not None:
-            moved = _with_cost(request, shortest, exact_budget)
-            candidates.append(Attempt(status, search, *moved, first, Polyanya.name, bound, work))
+            path, cost = _with_cost(request, shortest, exact_budget)
+            candidates.append(found._replace(path=path, cost=cost, planner=Polyanya.name))
     if request.clearance > 0.0:
         kept = shortest_kept_clear(request, exact_budget)
         work = work.plus(kept.work)
         if kept.path is not None:
             cost = _cost(request, kept.path, exact_budget)
-            clear = Attempt(status, search, kept.path, cost, first, Polyanya.name, bound, work)
-            candidates.append(clear)
+            candidates.append(found._replace(path=kept.path, cost=cost, planner=Polyanya.name))
     if request.clearance > 0.0 or not candidates:
-        improved = _improved(request, number, search, path, budget)
-        candidates.append(Attempt(status, search, *improved, first, planner, bound, work))
+        path, cost = _improved(request, number, found.search, found.path, budget)
+        candidates.append(found._replace(path=path, cost=cost))
     best = min(candidates, key=lambda candidate: candidate.cost)
-    return best._replace(work=work, kept_clear=kept)
+    return best._replace(lower_bound=bound, work=work, kept_clear=kept)
 
 
 def _budget_of_exact_search(
@@ -254,43 +261,3 @@ def _search(
 
     status, search, path = search_until_free(start, found_by, budget)
     return status, search, np.empty((0, request.space.dim)) if path is None else path
-
-
-def search_until_free(
-    start: Callable[[int], SearchType],
-    found_by: Callable[[SearchType], Found | None],
-    budget: Budget,
-) -> tuple[PlannerStatus, SearchType, Found | None]:
-    """
-    Search until a path is free in the caller's coordinates; return (status, search, found).
-
-    A path so close to a corner that the caller's coordinates round it into the obstacle does not
-    count: then the search is repeated with another random stream, with at most ``RESTARTS_MAX``
-    searches in all; one that draws nothing (``PathSearch.taut``) would find the same path again.
-    ``found`` is None where a limit was met or no path was found.
-
-    Parameters
-    ----------
-    start : callable
-        Returns a new search with the random stream number ``k``, 0 for the first.
-    found_by : callable
-        Returns the path, or other result, of a solved search; None when that is not free in the
-        caller's coordinates.
-    budget : Budget
-        Limits on the work: the deadline holds for all searches together, ``max_iterations`` for
-        each of them.
-
-    """
-    for salt in range(RESTARTS_MAX):
-        search = start(salt)
-        status = run(search, budget)
-        if status is PlannerStatus.SOLVED:
-            found = found_by(search)
-            if found is not None:
-                return status, search, found
-            status = budget.stop() or status
-        if status is not PlannerStatus.SOLVED:
-            return status, search, None
-        if getattr(search, 'taut', False):
-            break
-    return PlannerStatus.ITERATION_LIMIT, search, None

@@ -14,9 +14,10 @@ from typing import NamedTuple
 from hnr_planner.core.errors import Interrupted
 from hnr_planner.core.kernels.clock import working_time
 from hnr_planner.core.kernels.streams import Stream
-from hnr_planner.core.planning.attempts import SEARCH, search_until_free, SHORTEN
+from hnr_planner.core.planning.attempts import SEARCH, SHORTEN
 from hnr_planner.core.planning.limits import Budget
 from hnr_planner.core.planning.request import Effort
+from hnr_planner.core.planning.restarts import search_until_free
 from hnr_planner.core.planning.result import FirstSolution, PlannerStatus
 from hnr_planner.core.systems.primitives import first_blocked_step
 from hnr_planner.core.systems.trajectory import Trajectory
