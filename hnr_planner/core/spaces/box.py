@@ -6,7 +6,13 @@ from typing import NamedTuple
 from hnr_planner.core.checks import check_point, Floats
 from hnr_planner.core.kernels.kernel import inlined, kernel
 from hnr_planner.core.spaces.bounds import check_corners, in_words, kernel_origin
-from hnr_planner.core.spaces.convex import convex, count_pieces, piece_contains, piece_span
+from hnr_planner.core.spaces.convex import (
+    convex,
+    count_pieces,
+    piece_contains,
+    piece_entry,
+    piece_span,
+)
 from hnr_planner.core.spaces.curves.curve import coordinate, first_exit_on_curve
 from hnr_planner.core.spaces.curves.surfaces import (
     add_crossings,
@@ -143,6 +149,24 @@ def _piece_span(boxes, k, x, u, closed):
     if first < last or (closed and first == last):
         return first, last
     return math.inf, -math.inf
+
+
+@piece_entry.register(BoxData)
+@inlined
+def _piece_entry(boxes, k, x, u, t, end):
+    """Return the first parameter from ``t`` to ``end`` where the line touches a box, or inf."""
+    first, last = t, end
+    for i in range(len(x)):
+        below, above = boxes.lower[k, i] - x[i], boxes.upper[k, i] - x[i]
+        if u[i] > 0.0:
+            first, last = max(first, below / u[i]), min(last, above / u[i])
+        elif u[i] < 0.0:
+            first, last = max(first, above / u[i]), min(last, below / u[i])
+        elif not below <= 0.0 <= above:
+            return math.inf
+        if first > last:
+            return math.inf
+    return first
 
 
 @add_crossings.register(BoxData)

@@ -16,7 +16,7 @@ from typing import Any, TypeVar
 
 from hnr_planner.core.checks import Floats
 from hnr_planner.core.kernels.dispatch import dispatched
-from hnr_planner.core.kernels.kernel import kernel
+from hnr_planner.core.kernels.kernel import inlined, kernel
 from hnr_planner.core.lengths import norm
 from hnr_planner.core.spaces import primitives
 from hnr_planner.core.spaces.primitives import CompiledSpace, first_exit
@@ -54,6 +54,14 @@ def piece_span(
 
 
 @dispatched
+@inlined
+def piece_entry(space: CompiledSpace, k: int, x: Floats, u: Floats, t: float, end: float) -> float:
+    """Return the first parameter from ``t`` to ``end`` where the line touches a piece, or inf."""
+    lower, upper = piece_span(space, k, x, u, True)
+    return max(t, lower) if lower <= end and upper >= t else math.inf
+
+
+@dispatched
 @kernel
 def span_end_at(space: CompiledSpace, x: Floats, u: Floats, s: float) -> float:
     """
@@ -79,6 +87,7 @@ def convex(data_type: DataType) -> DataType:
         (primitives.gap, _gap),
         (primitives.segment_is_free, _segment_is_free),
         (primitives.line_touches, _line_touches),
+        (primitives.entry_beyond, _entry_beyond),
         (span_end_at, _span_end_at),
     ):
         primitive.register(data_type)(answer)
@@ -157,9 +166,7 @@ def _first_entry(space, x, u, t):
     """Return the first parameter from ``t`` on at which the line touches a piece."""
     first = math.inf
     for k in range(count_pieces(space)):
-        lower, upper = piece_span(space, k, x, u, True)
-        if t <= upper:
-            first = min(first, max(t, lower))
+        first = min(first, piece_entry(space, k, x, u, t, first))
     return first
 
 
@@ -178,10 +185,19 @@ def _segment_is_free(space, a, b):
 def _line_touches(space, x, u, end):
     """Return whether the line touches a piece at a parameter from 0 to ``end``."""
     for k in range(count_pieces(space)):
-        lower, upper = piece_span(space, k, x, u, True)
-        if lower <= end and upper >= 0.0:
+        if piece_entry(space, k, x, u, 0.0, end) < math.inf:
             return True
     return False
+
+
+@kernel
+def _entry_beyond(space, x, u, t, end):
+    """Return the first entry into a piece up to ``end``, else ``end``; or a value up to ``t``."""
+    for k in range(count_pieces(space)):
+        end = min(end, piece_entry(space, k, x, u, 0.0, end))
+        if end <= t:
+            break
+    return end
 
 
 @kernel

@@ -19,6 +19,7 @@ from hnr_planner.core.spaces.primitives import (
     chord,
     component,
     contains,
+    entry_beyond,
     exit_beyond,
     first_entry,
     first_exit,
@@ -195,9 +196,7 @@ def _segment_is_free(difference, a, b):
 def _exit_beyond(difference, x, u, t):
     """Return the exit of the ray if it is beyond ``t``; else a value up to ``t``."""
     end = first_exit(difference.base, x, u, 0.0, math.inf)
-    if end <= t or (t > 0.0 and line_touches(difference.removed, x, u, t)):
-        return 0.0
-    return min(end, first_entry(difference.removed, x, u, 0.0))
+    return end if end <= t else entry_beyond(difference.removed, x, u, t, end)
 
 
 @component.register(DifferenceData)

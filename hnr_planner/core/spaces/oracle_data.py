@@ -6,6 +6,7 @@ A space without a chord function is searched along lines (module ``search``), in
 """
 
 from collections.abc import Callable
+import math
 from typing import Any, NamedTuple
 
 from hnr_planner.core.checks import Floats
@@ -14,6 +15,7 @@ from hnr_planner.core.lengths import norm
 from hnr_planner.core.spaces.bounds import box_span
 from hnr_planner.core.spaces.callbacks import address, ask, callback, OracleError
 from hnr_planner.core.spaces.primitives import (
+    blocked_before,
     contains,
     exit_beyond,
     first_entry,
@@ -24,9 +26,9 @@ from hnr_planner.core.spaces.primitives import (
 from hnr_planner.core.spaces.search import entry_by_search, exit_by_search, is_in, work_size
 import numpy as np
 
-#: Distance within which ``exit_beyond`` locates an exit, as a fraction of a step: it takes 4 tests
-#: instead of the 30 down to ``closeness``, which are a seventh of the time to an arm's first path.
-ROUGHLY = 1 / 16
+#: Of the points of a ray, one of so many is tested by ``exit_beyond``: of several rays the longest
+#: is found by few tests, and the others need no more (1 to 16 were tried on an arm).
+COARSE = 16
 
 
 class OracleData(NamedTuple):
@@ -171,46 +173,56 @@ def _segment_is_free(oracle, a, b):
         return True
     if oracle.chord != 0:
         return _first_exit(oracle, a, u, 0.0, 1.0) > 1.0
-    return _is_free_up_to(oracle, a, u, 1.0)
+    return _first_found(oracle, a, u, 1.0, 1) == math.inf
 
 
 @exit_beyond.register(OracleData)
 @kernel
 def _exit_beyond(oracle, x, u, t):
     """
-    Return the exit of the ray if it is beyond ``t``; else a value up to ``t``.
+    Return about where the ray leaves the space if that is beyond ``t``; else a value up to ``t``.
 
-    A search locates it within ``ROUGHLY`` of a step only.
+    A search without a chord function tests one of ``COARSE`` points, and takes the ray for free up
+    to the middle between the last free one and the next.
     """
     if oracle.chord != 0:
-        return _first_exit(oracle, x, u, 0.0, np.inf)
-    if t > 0.0 and not _is_free_up_to(oracle, x, u, t):
+        return _first_exit(oracle, x, u, 0.0, math.inf)
+    work = np.empty(len(x) + 1)
+    if not _is_in(oracle, x, u, t, work) or _first_found(oracle, x, u, t, COARSE) < t:
         return 0.0
-    if not _is_in(oracle, x, u, t, np.empty(len(x) + 1)):
-        return t
     _, last = box_span(oracle.lower, oracle.upper, x, u)
-    step = oracle.resolution / norm(u)
-    return exit_by_search(oracle, x, u, t, np.inf, last, step, ROUGHLY * step)
+    stride, free = COARSE * oracle.resolution / norm(u), t
+    while free + stride < last and _is_in(oracle, x, u, free + stride, work):
+        free += stride
+    return (free + min(free + stride, last)) / 2.0
+
+
+@blocked_before.register(OracleData)
+@kernel
+def _blocked_before(oracle, x, u, end):
+    """Return a tested point's parameter below ``end`` that is not free, or inf."""
+    return math.inf if oracle.chord != 0 else _first_found(oracle, x, u, end, 1)
 
 
 @kernel
-def _is_free_up_to(oracle, x, u, end):
+def _first_found(oracle, x, u, end, finest):
     """
-    Return whether the points of the line that are tested between ``x`` and ``x + end u`` are free.
+    Return the parameter of the first blocked point found on the line up to ``end``; inf if none.
 
-    They are tested from coarse to fine: a blocked stretch is found by fewer tests than in order.
+    Tested are the multiples of ``finest`` steps, a power of 2, from coarse to fine: a blocked
+    stretch is found by fewer tests than in order.
     """
     work, step = np.empty(len(x) + 1), oracle.resolution / norm(u)
     last = int(end / step)
-    stride = 1
+    stride = finest
     while 2 * stride <= last:
         stride *= 2
-    while stride > 0:
+    while stride >= finest:
         for k in range(stride, last + 1, 2 * stride):
             if not _is_in(oracle, x, u, k * step, work):
-                return False
+                return k * step
         stride //= 2
-    return True
+    return math.inf
 
 
 @work_size.register(OracleData)

@@ -18,6 +18,7 @@ from hnr_planner.core.spaces.convex import (
     first_exit_of_pieces,
     pack,
     piece_contains,
+    piece_entry,
     piece_span,
     span_end_at,
 )
@@ -30,6 +31,7 @@ from hnr_planner.core.spaces.curves.surfaces import (
 )
 from hnr_planner.core.spaces.primitives import (
     contains,
+    entry_beyond,
     first_entry,
     first_exit,
     gap,
@@ -242,9 +244,7 @@ def _first_entry(tree, x, u, t):
     inverse, first = _inverse(u), math.inf
     node = _leaf_on(tree, 0, x, inverse, t, first)
     while node < len(tree.piece):
-        lower, upper = piece_span(tree.pieces, tree.piece[node], x, u, True)
-        if t <= upper:
-            first = min(first, max(t, lower))
+        first = min(first, piece_entry(tree.pieces, tree.piece[node], x, u, t, first))
         node = _leaf_on(tree, node + 1, x, inverse, t, first)
     return first
 
@@ -274,11 +274,22 @@ def _line_touches(tree, x, u, end):
     inverse = _inverse(u)
     node = _leaf_on(tree, 0, x, inverse, 0.0, end)
     while node < len(tree.piece):
-        lower, upper = piece_span(tree.pieces, tree.piece[node], x, u, True)
-        if lower <= end and upper >= 0.0:
+        if piece_entry(tree.pieces, tree.piece[node], x, u, 0.0, end) < math.inf:
             return True
         node = _leaf_on(tree, node + 1, x, inverse, 0.0, end)
     return False
+
+
+@entry_beyond.register(PieceTree)
+@kernel
+def _entry_beyond(tree, x, u, t, end):
+    """Return the first entry into a piece up to ``end``, else ``end``; or a value up to ``t``."""
+    inverse = _inverse(u)
+    node = _leaf_on(tree, 0, x, inverse, 0.0, end)
+    while node < len(tree.piece) and end > t:
+        end = min(end, piece_entry(tree.pieces, tree.piece[node], x, u, 0.0, end))
+        node = _leaf_on(tree, node + 1, x, inverse, 0.0, end)
+    return end
 
 
 @add_crossings.register(PieceTree)

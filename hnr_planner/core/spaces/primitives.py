@@ -128,15 +128,38 @@ def line_touches(space: CompiledSpace, x: Floats, u: Floats, end: float) -> bool
 
 @dispatched
 @kernel
+def entry_beyond(space: CompiledSpace, x: Floats, u: Floats, t: float, end: float) -> float:
+    """
+    Return the first parameter from 0 to ``end`` at which ``x + s u`` touches ``space``.
+
+    It is ``end`` where there is none. Where the line touches the space at or before ``t``, any
+    value up to ``t`` may be returned.
+    """
+    return min(end, first_entry(space, x, u, 0.0))
+
+
+@dispatched
+@kernel
 def exit_beyond(space: CompiledSpace, x: Floats, u: Floats, t: float) -> float:
     """
     Return the parameter ``s > t`` at which the ray from ``x`` along ``u`` leaves ``space``.
 
     Where it leaves the space before, any value up to ``t`` may be returned: of several rays the
-    longest is found sooner than the length of each. A space that can only test points may return
-    a parameter just after the exit: a fraction of the distance at which it tests them.
+    longest is found sooner than the length of each. A space that can only test points may look at
+    some of them only and return a rough value; ``blocked_before`` looks at the others.
     """
     return first_exit(space, x, u, 0.0, math.inf)
+
+
+@dispatched
+@kernel
+def blocked_before(space: CompiledSpace, x: Floats, u: Floats, end: float) -> float:
+    """
+    Return a parameter up to ``end`` at which the ray from ``x`` is blocked; inf if none.
+
+    ``end`` is at most what ``exit_beyond`` returned: inf where that is exact.
+    """
+    return math.inf
 
 
 @kernel

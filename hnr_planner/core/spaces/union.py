@@ -20,6 +20,7 @@ from hnr_planner.core.spaces.piece_tree import pack_many
 from hnr_planner.core.spaces.primitives import (
     CompiledSpace,
     contains,
+    entry_beyond,
     first_entry,
     first_exit,
     line_touches,
@@ -156,6 +157,14 @@ def _touches(union, x):
 def _line_touches(union, x, u, end):
     """Return whether the line touches one of the two spaces at a parameter from 0 to ``end``."""
     return line_touches(union.one, x, u, end) or line_touches(union.other, x, u, end)
+
+
+@entry_beyond.register(UnionData)
+@kernel
+def _entry_beyond(union, x, u, t, end):
+    """Return the first entry into either up to ``end``, else ``end``; or a value up to ``t``."""
+    end = entry_beyond(union.one, x, u, t, end)
+    return end if end <= t else entry_beyond(union.other, x, u, t, end)
 
 
 @first_exit.register(UnionData)

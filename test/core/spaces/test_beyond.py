@@ -4,8 +4,9 @@ from collections.abc import Iterator
 import math
 
 from hnr_planner.core import BallSpace, BoxSpace, DifferenceSpace, OracleSpace, Space, UnionSpace
-from hnr_planner.core.spaces.oracle_data import ROUGHLY
+from hnr_planner.core.spaces.oracle_data import COARSE
 from hnr_planner.core.spaces.primitives import (
+    blocked_before,
     contains,
     exit_beyond,
     first_entry,
@@ -57,19 +58,26 @@ def _lines(space: Space) -> Iterator[tuple[NDArray, NDArray, float]]:
 
 @pytest.mark.parametrize('name', SPACES)
 def test_an_exit_beyond_a_parameter_is_the_exit(name: str) -> None:
-    """Before it, any value up to the parameter tells that much."""
+    """
+    Before it, any value up to the parameter tells that much.
+
+    Where a space looks at few points only, the others tell how far the ray is free.
+    """
     space = SPACES[name]()
     beyond = 0
     for x, u, t in _lines(space):
         end = first_exit.interpreted(space.data, x, u, 0.0, math.inf)
         found = exit_beyond.interpreted(space.data, x, u, t)
-        if end > t:
-            # An oracle locates exits to a thousandth of the margin, and these roughly.
-            rough = ROUGHLY * space.resolution if isinstance(space, OracleSpace) else 0.0
-            assert abs(found - end) * np.linalg.norm(u) <= rough + space.margin
-            beyond += 1
+        blocked = blocked_before.interpreted(space.data, x, u, found)
+        if isinstance(space, OracleSpace):
+            step = space.resolution / np.linalg.norm(u)
+            assert found <= t or found > end - COARSE * step
+            assert (blocked < math.inf) == (found > end + step) or abs(found - end) < step
+            assert blocked == math.inf or end - space.margin <= blocked <= found
         else:
-            assert found <= t
+            assert abs(found - end) * np.linalg.norm(u) <= space.margin if end > t else found <= t
+            assert blocked == math.inf
+        beyond += end > t
     assert 5 < beyond < N_LINES - 5
 
 
