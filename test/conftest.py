@@ -34,7 +34,8 @@ os.environ.setdefault('OPENBLAS_NUM_THREADS', '1')
 os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'LOCALHOST'
 
 #: Folders and files that take longest, so that no worker has one of them left at the end; before
-#: these, what runs while machine code for the others is being made.
+#: these, what runs while machine code for the others is being made, and then what needs much
+#: memory for a moment, while the workers have loaded little machine code yet.
 FIRST = (
     'test/laws/test_space_laws.py',
     'test/laws/test_primitive_laws.py',
@@ -45,6 +46,8 @@ FIRST = (
     'test/core/spaces/test_piece_tree.py',
     'test/core/spaces/test_sheared.py',
     'test/core/kernels/test_tiers.py',
+    'test/cli/test_drawing.py',
+    'test/maps/test_large_images.py',
     'test/experiments/test_experiments.py',
     'test/core/sampling/test_walk_laws.py',
     'test/cli/test_pages.py',

@@ -112,6 +112,7 @@ def test_default_demo(start) -> None:
     check_success(demo)
 
 
+@pytest.mark.sweep
 @pytest.mark.parametrize('file', OTHER_KINDS, ids=lambda file: file.name)
 def test_demo_on_a_real_map(start, file: Path) -> None:
     check_success(start('--map', file))

@@ -33,8 +33,8 @@ def clone(tmp_path: Path) -> Iterator[Path]:
     yield tmp_path
 
 
-def run(command: list[str], folder: Path, mode: modes.Mode = modes.Mode.COMPILED) -> str:
-    """Run a command in a folder and return what it printed."""
+def run(command: list[str], folder: Path, mode: modes.Mode | None = None) -> str:
+    """Run a command in a folder, in the mode of this process by default; return what it said."""
     done = subprocess.run(
         command,
         cwd=folder,
@@ -42,7 +42,7 @@ def run(command: list[str], folder: Path, mode: modes.Mode = modes.Mode.COMPILED
             'PYTHONPATH': str(ROOT),
             'NUMBA_CACHE_DIR': str(cache_home(cache_folder())),
             'PATH': f'{Path(sys.executable).parent}:/usr/bin:/bin',
-            modes.VARIABLE: mode.value,
+            modes.VARIABLE: (mode or modes.mode()).value,
         },
         capture_output=True,
         text=True,
@@ -52,7 +52,12 @@ def run(command: list[str], folder: Path, mode: modes.Mode = modes.Mode.COMPILED
     return done.stdout
 
 
-@pytest.mark.parametrize('page', ['map_files', 'sampling', 'measured'])
+# What an experiment is made of, test/experiments/ runs, and how the command shows one,
+# test_experiment.py.
+@pytest.mark.interpreted
+@pytest.mark.parametrize(
+    'page', ['map_files', 'sampling', pytest.param('measured', marks=pytest.mark.sweep)]
+)
 def test_commands_run_and_write_their_files(page: str, clone: Path) -> None:
     (block,) = blocks('bash', page)
     out = run(['bash', '-ec', block], clone)
@@ -67,6 +72,7 @@ def test_commands_run_and_write_their_files(page: str, clone: Path) -> None:
         assert len((clone / name).read_text().splitlines()) == 5001
 
 
+@pytest.mark.interpreted
 @pytest.mark.parametrize(
     ('page', 'begins'),
     [

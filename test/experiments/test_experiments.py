@@ -29,6 +29,7 @@ def test_every_experiment_runs_and_repeats_itself(
     monkeypatch.delenv('HNR_MAPS', raising=False)
     monkeypatch.setattr(sets, 'CHAINS_PER_CELL', 4)  # a few chains, seen from afar
     monkeypatch.setattr(variation, 'MIXED', 0.5)
+    monkeypatch.setattr(safety, 'FLOORS', {'floor 2': 2})  # one of three
     experiment = load(name)
     assert experiment.entry is EXPERIMENTS[name]
     results = conduct(experiment, 1, tmp_path, n_jobs=1)

@@ -101,6 +101,7 @@ def chord_is_short(space: Space, curve: Any, left: float, step: float) -> bool:
     return bool((~space.contains(points_on(curve, times))).any())
 
 
+@pytest.mark.interpreted
 def test_a_gap_that_rays_pass_is_passed_by_curves() -> None:
     rooms = UnionSpace(BoxSpace((0, 0), (0.3, 1)), BoxSpace((0.1 + 0.2, 0), (1, 1)))
     x, v, a = np.array([0.1, 0.5]), np.array([0.5, 0.1]), np.array([0.1, -0.2])

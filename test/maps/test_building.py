@@ -14,7 +14,7 @@ OFFICE = Path(__file__).parents[2] / 'config' / 'maps' / 'office.yaml'
 ROBOT = 0.22
 
 
-@pytest.fixture(scope='module', params=[OFFICE_SEED, 0, 1])
+@pytest.fixture(scope='module', params=[OFFICE_SEED, 0, pytest.param(1, marks=pytest.mark.sweep)])
 def seed(request: pytest.FixtureRequest) -> int:
     return request.param
 

@@ -39,7 +39,9 @@ def test_idle_node_ends_cleanly(tmp_path: Path, signals: tuple[signal.Signals, .
         assert_clean_end(process, *signals)
 
 
-@pytest.mark.parametrize('signals', SIGNALS)
+@pytest.mark.parametrize(
+    'signals', [*SIGNALS[:3], pytest.param(SIGNALS[3], marks=pytest.mark.sweep)]
+)
 def test_searching_node_answers_and_ends_cleanly(
     tmp_path: Path, signals: tuple[signal.Signals, ...]
 ) -> None:

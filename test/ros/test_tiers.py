@@ -56,11 +56,15 @@ def solved(client: Client) -> tuple[np.ndarray, dict[str, str]]:
 
 
 def ask_until_compiled(client: Client, first: np.ndarray) -> None:
-    """Ask the same until machine code responds; every path on the way is the first one."""
+    """Ask the same until machine code responds; every path on the way is the first one.
+
+    The pauses leave the processor to the compiler.
+    """
     deadline = time.monotonic() + PATIENCE
     tier = 'interpreted'
     while tier == 'interpreted':
         assert time.monotonic() < deadline, 'the compilation takes too long'
+        time.sleep(0.2)
         path, values = solved(client)
         assert np.array_equal(path, first)
         tier = values['tier']

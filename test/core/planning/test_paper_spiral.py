@@ -12,6 +12,8 @@ from numpy.typing import NDArray
 import pytest
 
 RUNS = 500
+#: The paper's narrowest and widest spiral here, and, as sweeps, two in between.
+WIDTHS = [1.2, *(pytest.param(width, marks=pytest.mark.sweep) for width in (1.6, 2.0)), 2.4]
 
 
 def transitions(space: GridSpace, problem: Corridor, algorithm: str) -> NDArray[np.int64]:
@@ -32,7 +34,7 @@ def transitions(space: GridSpace, problem: Corridor, algorithm: str) -> NDArray[
     return np.array(counts)
 
 
-@pytest.mark.parametrize('width', [1.2, 1.6, 2.0, 2.4])
+@pytest.mark.parametrize('width', WIDTHS)
 def test_hit_and_run_needs_fewer_transitions_than_rrt(width: float):
     problem = spiral(width)
     space = GridSpace.from_blocked(problem.blocked, problem.resolution)

@@ -1,5 +1,6 @@
 """Sets for the tests of walks, each as a brute-force region and as a space of the package."""
 
+from collections.abc import Collection
 from functools import cache
 from test.laws import maps
 from test.regions import (
@@ -131,6 +132,6 @@ SETS = {
 FURTHER = ('hall and dome', 'court with pillars', 'banana, 3-D', 'stone, 3-D')
 
 
-def marked(name: str, *values: object) -> object:
-    """Return a parameter that belongs to the sweeps if its set does."""
-    return pytest.param(name, *values, marks=[pytest.mark.sweep] * (name in FURTHER))
+def marked(name: str, *values: object, further: Collection[str] = FURTHER) -> object:
+    """Return a parameter that belongs to the sweeps if its set is one of ``further``."""
+    return pytest.param(name, *values, marks=[pytest.mark.sweep] * (name in further))

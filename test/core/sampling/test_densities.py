@@ -100,7 +100,10 @@ def box_without_balls() -> DifferenceSpace:
     return DifferenceSpace(BoxSpace(np.full(3, -1.0), np.full(3, 1.5)), *balls)
 
 
-@pytest.mark.parametrize(('density', 'is_right'), [(_standard_normal, True), (_narrower, False)])
+@pytest.mark.parametrize(
+    ('density', 'is_right'),
+    [(_standard_normal, True), pytest.param(_narrower, False, marks=pytest.mark.sweep)],
+)
 def test_a_normal_density_in_a_box_without_balls_is_kept(density, is_right):
     """Marginals against as many exact points: normal ones that are free."""
     space, rng = box_without_balls(), np.random.default_rng(3)

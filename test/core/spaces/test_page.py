@@ -5,10 +5,12 @@ import re
 
 from hnr_planner.core import Space
 import numpy as np
+import pytest
 
 PAGE = Path(__file__).resolve().parents[3] / 'docs' / 'spaces.md'
 
 
+@pytest.mark.interpreted
 def test_the_code_of_the_page_runs():
     code = '\n'.join(re.findall(r'```python\n(.*?)```', PAGE.read_text(), re.DOTALL))
     names: dict[str, object] = {}

@@ -19,8 +19,16 @@ SPACE = DifferenceSpace(
 START, GOAL = np.array([0.5, 0.5, 0.5, 0.0, 0.0, 0.0]), np.array([3.5, 3.5, 0.5])
 
 
-@pytest.mark.parametrize('speed', [0.0, 0.8])
-@pytest.mark.parametrize('algorithm', ['kinodynamic_connect', 'kinodynamic_rrt'])
+# Each planner and each speed once; the other two pairs are sweeps.
+@pytest.mark.parametrize(
+    ('algorithm', 'speed'),
+    [
+        ('kinodynamic_connect', 0.8),
+        ('kinodynamic_rrt', 0.0),
+        pytest.param('kinodynamic_connect', 0.0, marks=pytest.mark.sweep),
+        pytest.param('kinodynamic_rrt', 0.8, marks=pytest.mark.sweep),
+    ],
+)
 def test_a_trajectory_among_spheres_is_free_and_keeps_the_limits(
     algorithm: str, speed: float
 ) -> None:

@@ -18,6 +18,8 @@ from hnr_planner.core import (
 import numpy as np
 import pytest
 
+pytestmark = pytest.mark.interpreted
+
 BLOCKED = maps.speckle(30, 40, 0.25, 1)
 ORIGIN = (3.0, -2.0, 0.7)
 SPACE = GridSpace.from_blocked(BLOCKED, 0.05, ORIGIN)
