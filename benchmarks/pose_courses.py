@@ -14,13 +14,14 @@ from numpy.typing import NDArray
 #: The robot [m]: .9 m by .6 m, and the least turning radius of the car.
 FOOTPRINT = ((-0.35, -0.3), (0.55, -0.3), (0.55, 0.3), (-0.35, 0.3))
 RADIUS = 1.0
-#: Robot maps of the other sections that take part, and seeds of generated buildings.
-MAPS, BUILDINGS = ('office', 'depot', 'intel-lab', 'tb3_sandbox'), (3, 4)
+#: Robot maps of the other sections that take part, with the least distance of start and goal of a
+#: random pair [m]; that distance in generated buildings, and their seeds.
+MAPS = {'office': 5.0, 'depot': 5.0, 'intel-lab': 5.0, 'tb3_sandbox': 2.5}
+APART, BUILDINGS = 5.0, (3, 4)
 #: Widths of doors and bays, and lengths of slots [m].
 DOORS, BAYS, SLOTS = (1.0, 0.8, 0.65), (1.0, 0.8, 0.65), (1.6, 1.4, 1.2)
-#: Least distance of start and goal of a random pair [m], and seed of the pairs: one that no
-#: setting of a planner was chosen on.
-APART, SEED = 5.0, 20161
+#: Seed of the pairs: one that no setting of a planner was chosen on.
+SEED = 20161
 RESOLUTION = 0.05
 
 
@@ -44,15 +45,22 @@ def pose_courses(problems: list[Problem], n_pairs: int) -> list[PoseCourse]:
         made = building(seed)
         grids[f'building {seed}'] = GridSpace.from_occupancy(made.data, made.resolution)
     return [
-        *(PoseCourse(name, grid, _pairs(grid, n_pairs)) for name, grid in grids.items()),
+        *(
+            PoseCourse(name, grid, _pairs(grid, n_pairs, MAPS.get(name, APART)))
+            for name, grid in grids.items()
+        ),
         *(_door(width) for width in DOORS),
         *(_bay(width) for width in BAYS),
         *(_slot(length) for length in SLOTS),
     ]
 
 
-def _pairs(grid: GridSpace, n: int) -> Floats:
-    """Return pairs of free poses (n, 2, 3), uniform among those that the robot's disc joins."""
+def _pairs(grid: GridSpace, n: int, apart: float) -> Floats:
+    """
+    Return pairs of free poses (n, 2, 3) that the robot's disc joins, at least ``apart`` [m] apart.
+
+    They are uniform among those.
+    """
     space, rng = PoseSpace(grid, FOOTPRINT), np.random.default_rng(SEED)
     lower, upper = space.bounds
     found: list[tuple[Floats, Floats]] = []
@@ -62,7 +70,7 @@ def _pairs(grid: GridSpace, n: int) -> Floats:
         found += [
             (a, b)
             for a, b in zip(poses[::2], poses[1::2], strict=False)
-            if math.dist(a[:2], b[:2]) >= APART
+            if math.dist(a[:2], b[:2]) >= apart
             and space.disc.space.connected(space.disc.place(a), space.disc.place(b))
         ]
     return np.array(found[:n])

@@ -35,13 +35,13 @@ SHARE = {'office': 0.1, 'depot': 0.5}
 
 EXPLAINED = f"""\
 A robot of .9 m by .6 m; the car's turning radius is {RADIUS:g} m. Pairs of poses are random, at
-least 5 m apart and joined by the largest disc in the footprint; none was used to choose a
-setting. *First* is the time to a path as it is found, *shortened* the time of a whole request:
-medians in milliseconds of the processor. Length is over that of the disc's shortest path, which
-no robot can be below by more than its size. Our paths are exact all along; a sample of them is
-followed in steps of {CHECK_STEP:g} cell by an independent checker. OMPL 1.5 tests its states
-exactly, and motions at steps of {STEP:g} m only: what its paths touch in between is not counted
-here. All find a path within {LIMIT:g} s, or fail.
+least 5 m apart (2.5 m on tb3_sandbox, which is 4.5 m wide) and joined by the largest disc in the
+footprint; none was used to choose a setting. *First* is the time to a path as it is found,
+*shortened* the time of a whole request: medians in milliseconds of the processor. Length is over
+that of the disc's shortest path, which no robot can be below by more than its size. Our paths are
+exact all along; a sample of them is followed in steps of {CHECK_STEP:g} cell by an independent
+checker. OMPL 1.5 tests its states exactly, and motions at steps of {STEP:g} m only: what its paths
+touch in between is not counted here. All find a path within {LIMIT:g} s, or fail.
 
 Nav2's Smac Hybrid-A* (C++, jazzy 1.3.13, a real planner server, on the same office and depot but
 other pairs and another machine load, as measured for this project on 2026-11-29) needs 116 ms
