@@ -56,7 +56,8 @@ def solved(client: Client) -> tuple[np.ndarray, dict[str, str]]:
 
 
 def ask_until_compiled(client: Client, first: np.ndarray) -> None:
-    """Ask the same until machine code responds; every path on the way is the first one.
+    """
+    Ask the same until machine code responds; every path on the way is the first one.
 
     The pauses leave the processor to the compiler.
     """
