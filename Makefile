@@ -32,7 +32,7 @@ help:
 	@echo 'make digests               whether interpreted kernels and machine code agree to the bit'
 	@echo 'make soak                  the nodes under load and faults, for a quarter of an hour'
 	@echo 'make check                 format, lint, types, spelling, the site, then the tests'
-	@echo 'make bench                 side by side with OMPL, grid search and hopsy, half an hour'
+	@echo 'make bench                 side by side with OMPL, grid search and hopsy, an hour'
 	@echo 'make bench QUICK=1         the same in some minutes, for a look'
 	@echo 'make docs                  the site, in docs/_build/html'
 	@echo 'make figures               the experiments of docs/ again, half an hour'

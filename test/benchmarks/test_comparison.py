@@ -28,6 +28,23 @@ FIRST, LENGTH, MOTIONS, ASKED = (
 )
 
 
+def table(section: str, head: str) -> dict[str, list[str]]:
+    """Return the figures by name of the table of a section whose first heading is ``head``."""
+    part = REPORT.partition(f'\n## {section}\n')[2].partition('\n## ')[0]
+    lines = part.partition(f'\n| {head} |')[2].partition('\n\n')[0].splitlines()[2:]
+    cells = [[cell.strip() for cell in line.strip('|').split('|')] for line in lines]
+    return {name: figures for name, *figures in cells}
+
+
+FAR = table('The shortest path, proved', 'far requests')
+DIMENSIONS = table('In n dimensions', 'first path [ms]')
+POSES = {
+    name: figures
+    for name, drive, *figures in rows(REPORT, 'Robots that are not round')
+    if drive == 'car'
+}
+
+
 def of_map(name: str) -> list[str]:
     """Return times of the first paths, to within 1 % and of the wavefront, and its length."""
     return [FIRST[name][k] for k in (0, 2, 6)] + LENGTH[name][4:7]
@@ -43,7 +60,24 @@ def of_walk(name: str) -> list[str]:
     return re.findall(r'[\d.]+(?= M)', ASKED[f'steps a second, {name}'][1])
 
 
-RECORDED = {'map': of_map, 'course': of_course, 'walk, set': of_walk}
+def of_problem(name: str) -> list[str]:
+    """Return median times of first paths: ours, of RRTConnect, BiEST and BKPIECE1."""
+    return [DIMENSIONS[name][k].partition(' / ')[0] for k in (0, 2, 3, 4)]
+
+
+def of_car(name: str) -> list[str]:
+    """Return times to our first and shortened path, its length, and times of OMPL's planners."""
+    return [POSES[name][k] for k in (1, 3, 4, 6, 8)]
+
+
+RECORDED = {
+    'map': of_map,
+    'far requests': lambda name: FAR[name][:4],
+    'problem': of_problem,
+    'car': of_car,
+    'course': of_course,
+    'walk, set': of_walk,
+}
 
 
 def quoted() -> list[tuple[str, list[str], list[str]]]:
@@ -58,7 +92,7 @@ def quoted() -> list[tuple[str, list[str], list[str]]]:
 
 
 def test_every_table_is_read() -> None:
-    assert len(quoted()) == 20
+    assert len(quoted()) == 40
 
 
 @pytest.mark.parametrize(('name', 'figures', 'recorded'), quoted())
