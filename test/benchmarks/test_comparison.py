@@ -12,9 +12,18 @@ REPORT = (ROOT / 'benchmarks' / 'results.md').read_text()
 
 def rows(text: str, section: str) -> list[list[str]]:
     """Return the cells of all table rows of a section, a header before those of its table."""
-    part = text.partition(f'\n## {section}\n')[2].partition('\n## ')[0]
-    lines = [line for line in part.splitlines() if re.match(r'\| (?!---)', line)]
-    return [[cell.strip() for cell in line.strip('|').split('|')] for line in lines]
+    lines = [line for line in part(text, section).splitlines() if re.match(r'\| (?!---)', line)]
+    return list(map(cells, lines))
+
+
+def part(text: str, section: str) -> str:
+    """Return the text of a section."""
+    return text.partition(f'\n## {section}\n')[2].partition('\n## ')[0]
+
+
+def cells(line: str) -> list[str]:
+    """Return the cells of a row of a table."""
+    return [cell.strip() for cell in line.strip('|').split('|')]
 
 
 FIRST, LENGTH, MOTIONS, ASKED = (
@@ -30,10 +39,9 @@ FIRST, LENGTH, MOTIONS, ASKED = (
 
 def table(section: str, head: str) -> dict[str, list[str]]:
     """Return the figures by name of the table of a section whose first heading is ``head``."""
-    part = REPORT.partition(f'\n## {section}\n')[2].partition('\n## ')[0]
-    lines = part.partition(f'\n| {head} |')[2].partition('\n\n')[0].splitlines()[2:]
-    cells = [[cell.strip() for cell in line.strip('|').split('|')] for line in lines]
-    return {name: figures for name, *figures in cells}
+    after = part(REPORT, section).partition(f'\n| {head} |')[2]
+    lines = after.partition('\n\n')[0].splitlines()[2:]
+    return {name: figures for name, *figures in map(cells, lines)}
 
 
 FAR = table('The shortest path, proved', 'far requests')

@@ -8,6 +8,8 @@ point. After ``REDRAWS_MAX`` redraws ``y`` is ``x``. All points are in the kerne
 Steps of chains, which start from the point before and reuse its cache, are in module ``walks``.
 """
 
+import math
+
 from hnr_planner.core.kernels.copies import copy_into
 from hnr_planner.core.kernels.kernel import inlined, kernel
 from hnr_planner.core.kernels.streams import uniform
@@ -48,21 +50,20 @@ def draw_on_chord(space, x, u, rng, y):
     Return the number of redraws; if that is ``REDRAWS_MAX``, ``y`` is ``x``.
     """
     lower, upper = chord(space, x, u, -u)
-    return draw_between(space, x, u, lower, upper, rng, y)
-
-
-@kernel
-def draw_between(space, x, u, lower, upper, rng, y):
-    """
-    Write the point at s of a line into ``y`` (dim,), s uniform in (lower, upper), and it free.
-
-    A point that is not free, or s on an end, is drawn again. Return the number of redraws; after
-    ``REDRAWS_MAX`` redraws ``y`` is ``x``.
-    """
     for redraws in range(REDRAWS_MAX):
-        s = lower + (upper - lower) * uniform(rng)
-        point_on_line(space, x, u, s, y)
-        if lower < s < upper and contains(space, y):
+        if not math.isnan(try_between(space, x, u, lower, upper, rng, y)):
             return redraws
     copy_into(y, x)
     return REDRAWS_MAX
+
+
+@inlined
+def try_between(space, x, u, lower, upper, rng, y):
+    """
+    Write the point at s of a line into ``y`` (dim,), s uniform in (lower, upper), and return s.
+
+    Return nan where s rounds onto an end or the point is not free: then it is to be drawn again.
+    """
+    s = lower + (upper - lower) * uniform(rng)
+    point_on_line(space, x, u, s, y)
+    return s if lower < s < upper and contains(space, y) else math.nan

@@ -135,7 +135,28 @@ def _piece_contains(boxes, k, x, closed):
 @inlined
 def _piece_span(boxes, k, x, u, closed):
     """Return the interval of the line ``x + s u`` in box ``k``; (inf, -inf) for none."""
-    first, last = -math.inf, math.inf
+    first, last = _clipped(boxes, k, x, u, -math.inf, math.inf, closed)
+    if first < last or (closed and first == last):
+        return first, last
+    return math.inf, -math.inf
+
+
+@piece_entry.register(BoxData)
+@inlined
+def _piece_entry(boxes, k, x, u, t, end):
+    """Return the first parameter from ``t`` to ``end`` where the line touches a box, or inf."""
+    first, last = _clipped(boxes, k, x, u, t, end, True)
+    return first if first <= last else math.inf
+
+
+@inlined
+def _clipped(boxes, k, x, u, first, last, closed):
+    """
+    Return the part of the interval (first, last) of the line ``x + s u`` in box ``k``.
+
+    The faces of the box belong to it when ``closed``. The part is (inf, -inf) as soon as one
+    coordinate leaves nothing.
+    """
     for i in range(len(x)):
         below, above = boxes.lower[k, i] - x[i], boxes.upper[k, i] - x[i]
         if u[i] > 0.0:
@@ -146,27 +167,7 @@ def _piece_span(boxes, k, x, u, closed):
             return math.inf, -math.inf
         if first > last:
             return math.inf, -math.inf
-    if first < last or (closed and first == last):
-        return first, last
-    return math.inf, -math.inf
-
-
-@piece_entry.register(BoxData)
-@inlined
-def _piece_entry(boxes, k, x, u, t, end):
-    """Return the first parameter from ``t`` to ``end`` where the line touches a box, or inf."""
-    first, last = t, end
-    for i in range(len(x)):
-        below, above = boxes.lower[k, i] - x[i], boxes.upper[k, i] - x[i]
-        if u[i] > 0.0:
-            first, last = max(first, below / u[i]), min(last, above / u[i])
-        elif u[i] < 0.0:
-            first, last = max(first, above / u[i]), min(last, below / u[i])
-        elif not below <= 0.0 <= above:
-            return math.inf
-        if first > last:
-            return math.inf
-    return first
+    return first, last
 
 
 @add_crossings.register(BoxData)

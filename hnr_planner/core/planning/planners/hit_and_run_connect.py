@@ -33,12 +33,11 @@ from hnr_planner.core.planning.planners.two_trees import (
     TwoTreeSearch,
     with_rows,
 )
-from hnr_planner.core.sampling.draws import REDRAWS_MAX
-from hnr_planner.core.spaces.lines import draw_direction, point_on_line
+from hnr_planner.core.sampling.draws import REDRAWS_MAX, try_between
+from hnr_planner.core.spaces.lines import draw_direction
 from hnr_planner.core.spaces.primitives import (
     blocked_before,
     component,
-    contains,
     exit_beyond,
     segment_is_free,
 )
@@ -222,10 +221,8 @@ def _draw_on_ray(space, x, u, end, rng, y):
     ends there. Returns the number of redraws; after ``REDRAWS_MAX`` redraws ``y`` is ``x``.
     """
     for redraws in range(REDRAWS_MAX):
-        lower = INNER * end
-        s = lower + (end - lower) * uniform(rng)
-        point_on_line(space, x, u, s, y)
-        if lower < s < end and contains(space, y):
+        s = try_between(space, x, u, INNER * end, end, rng, y)
+        if not math.isnan(s):
             blocked = blocked_before(space, x, u, s)
             if blocked == math.inf:
                 return redraws

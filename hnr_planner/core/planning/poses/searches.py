@@ -5,7 +5,8 @@ Each has its own random streams, so that its result does not depend on the searc
 """
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, reduce
+import math
 from typing import NamedTuple
 
 from hnr_planner.core.checks import Floats
@@ -20,6 +21,7 @@ from hnr_planner.core.planning.poses.request import PoseRequest
 from hnr_planner.core.planning.poses.search import PoseSearch
 from hnr_planner.core.planning.poses.shorten import shorten_path, SPARE_ROWS
 from hnr_planner.core.planning.poses.trees import PoseProblem
+from hnr_planner.core.planning.restarts import search_until_free
 from hnr_planner.core.planning.result import FirstSolution, PlannerStatus
 from hnr_planner.core.spaces.poses.disc import Disc
 import numpy as np
@@ -61,6 +63,11 @@ class PoseAttempt(NamedTuple):
     path: PosePath | None
     first: FirstSolution | None
 
+    @property
+    def cost(self) -> float:
+        """Cost of the path [cells]; inf where there is none."""
+        return math.inf if self.path is None else self.path.cost
+
 
 @dataclass(frozen=True)
 class PoseSearches:
@@ -95,14 +102,15 @@ class PoseSearches:
         A path that these round into an obstacle does not count: then the search is repeated, at
         most ``RESTARTS_MAX`` times in all. The path is None where none was found.
         """
-        found = self._attempt(0, self.budget)
-        work = Work.of(found.search)
-        while found.path is None and found.status is PlannerStatus.SOLVED:
-            if found.number + 1 == RESTARTS_MAX:
-                return found._replace(status=PlannerStatus.ITERATION_LIMIT), work
-            found = self._attempt(found.number + 1, self.budget)
-            work = work.plus(Work.of(found.search))
-        return found, work
+        searches: list[PoseSearch] = []
+
+        def start(salt: int) -> PoseSearch:
+            searches.append(self._search(salt))
+            return searches[-1]
+
+        status, search, path = search_until_free(start, self._free_path, self.budget, RESTARTS_MAX)
+        work = reduce(Work.plus, map(Work.of, searches))
+        return self._attempt(len(searches) - 1, status, search, path, self.budget), work
 
     def optimize(
         self, found: PoseAttempt, work: Work, rounds: float, budget: Budget
@@ -113,20 +121,35 @@ class PoseSearches:
         The rounds end once the number of a search would be above ``rounds`` or a limit of the
         budget is met.
         """
-        best, path, number = found, found.path, found.number + 1
+        best, number = found, found.number + 1
         while number <= rounds and budget.stop() is None:
-            again = self._attempt(number, budget)
-            work, number = work.plus(Work.of(again.search)), number + 1
-            if path is not None and again.path is not None and again.path.cost < path.cost:
-                best, path = again, again.path
+            search = self._search(number)
+            status = run(search, budget)
+            path = self._free_path(search) if status is PlannerStatus.SOLVED else None
+            again = self._attempt(number, status, search, path, budget)
+            work, number = work.plus(Work.of(search)), number + 1
+            best = min(best, again, key=lambda each: each.cost)
         return best, work
 
-    def _attempt(self, number: int, budget: Budget) -> PoseAttempt:
-        """Search once within a budget, and shorten the path where the request asks for it."""
+    def _search(self, number: int) -> PoseSearch:
+        """Return the search of a number, which has not begun."""
         request, rng = self.request, self.request.stream(SEARCH, number)
-        search = PoseSearch(self._problem, request.proposals, self.roots, rng, self._other_guide)
-        status = run(search, budget)
-        path = _checked(request, *search.path) if status is PlannerStatus.SOLVED else None
+        return PoseSearch(self._problem, request.proposals, self.roots, rng, self._other_guide)
+
+    def _free_path(self, search: PoseSearch) -> PosePath | None:
+        """Return the path of a solved search; None where it is not free for the caller."""
+        return _checked(self.request, *search.path)
+
+    def _attempt(
+        self,
+        number: int,
+        status: PlannerStatus,
+        search: PoseSearch,
+        path: PosePath | None,
+        budget: Budget,
+    ) -> PoseAttempt:
+        """Return what became of a search; its path is shortened where the request asks for it."""
+        request = self.request
         if path is None:
             return PoseAttempt(number, status, search, None, None)
         first = FirstSolution(working_time() - self.began, path.length, path.poses)
