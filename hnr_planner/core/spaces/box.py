@@ -159,10 +159,9 @@ def _clipped(boxes, k, x, u, first, last, closed):
     """
     for i in range(len(x)):
         below, above = boxes.lower[k, i] - x[i], boxes.upper[k, i] - x[i]
-        if u[i] > 0.0:
-            first, last = max(first, below / u[i]), min(last, above / u[i])
-        elif u[i] < 0.0:
-            first, last = max(first, above / u[i]), min(last, below / u[i])
+        if u[i] != 0.0:
+            p, q = below / u[i], above / u[i]
+            first, last = max(first, min(p, q)), min(last, max(p, q))
         elif not (below < 0.0 < above or (closed and below <= 0.0 <= above)):
             return math.inf, -math.inf
         if first > last:

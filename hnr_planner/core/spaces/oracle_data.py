@@ -15,9 +15,9 @@ from hnr_planner.core.lengths import norm
 from hnr_planner.core.spaces.bounds import box_span
 from hnr_planner.core.spaces.callbacks import address, ask, callback, OracleError
 from hnr_planner.core.spaces.primitives import (
-    blocked_before,
     contains,
     exit_beyond,
+    first_blocked,
     first_entry,
     first_exit,
     segment_is_free,
@@ -64,6 +64,11 @@ class OracleData(NamedTuple):
     membership: int
     chord: int
     motion: int
+
+    @property
+    def tests_points(self) -> bool:
+        """Whether membership is all that there is, so that lines are searched by tests."""
+        return self.chord == 0 and self.motion == 0
 
 
 class OracleFunctions:
@@ -168,12 +173,10 @@ def _segment_is_free(oracle, a, b):
         return answer[0] != 0.0
     if not (_contains(oracle, b) and _contains(oracle, a)):
         return False
-    u = b - a
-    if not u.any():
-        return True
     if oracle.chord != 0:
-        return _first_exit(oracle, a, u, 0.0, 1.0) > 1.0
-    return _first_found(oracle, a, u, 1.0, 1) == math.inf
+        u = b - a
+        return not u.any() or _first_exit(oracle, a, u, 0.0, 1.0) > 1.0
+    return _first_blocked_between(oracle, a, b) == math.inf
 
 
 @exit_beyond.register(OracleData)
@@ -197,11 +200,28 @@ def _exit_beyond(oracle, x, u, t):
     return (free + min(free + stride, last)) / 2.0
 
 
-@blocked_before.register(OracleData)
+@first_blocked.register(OracleData)
 @kernel
-def _blocked_before(oracle, x, u, end):
-    """Return a tested point's parameter below ``end`` that is not free, or inf."""
-    return math.inf if oracle.chord != 0 else _first_found(oracle, x, u, end, 1)
+def _first_blocked(oracle, x, y):
+    """Return the fraction of the segment at which a tested point is not free, or inf."""
+    return math.inf if oracle.chord != 0 else _first_blocked_between(oracle, x, y)
+
+
+@kernel
+def _first_blocked_between(oracle, a, b):
+    """
+    Return the fraction of the segment from ``a`` to ``b`` at which a test fails; inf if nowhere.
+
+    Points are tested from the end that comes first in the order of their coordinates: the same
+    in both directions.
+    """
+    for i in range(len(a)):
+        if a[i] < b[i]:
+            return _first_found(oracle, a, b - a, 1.0, 1)
+        if a[i] > b[i]:
+            found = _first_found(oracle, b, a - b, 1.0, 1)
+            return 1.0 - found if found < math.inf else math.inf
+    return math.inf
 
 
 @kernel

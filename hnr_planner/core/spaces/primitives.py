@@ -146,18 +146,19 @@ def exit_beyond(space: CompiledSpace, x: Floats, u: Floats, t: float) -> float:
 
     Where it leaves the space before, any value up to ``t`` may be returned: of several rays the
     longest is found sooner than the length of each. A space that can only test points may look at
-    some of them only and return a rough value; ``blocked_before`` looks at the others.
+    some of them only and return a rough value; ``first_blocked`` looks at the others.
     """
     return first_exit(space, x, u, 0.0, math.inf)
 
 
 @dispatched
 @kernel
-def blocked_before(space: CompiledSpace, x: Floats, u: Floats, end: float) -> float:
+def first_blocked(space: CompiledSpace, x: Floats, y: Floats) -> float:
     """
-    Return a parameter up to ``end`` at which the ray from ``x`` is blocked; inf if none.
+    Return where the segment from ``x`` to ``y`` is blocked, as a fraction of it; inf if nowhere.
 
-    ``end`` is at most what ``exit_beyond`` returned: inf where that is exact.
+    ``y`` is a free point on a ray, before the end that ``exit_beyond`` returned: the answer is inf
+    where that is exact. Where it is rough, the answer is inf if ``segment_is_free``.
     """
     return math.inf
 

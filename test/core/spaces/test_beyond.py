@@ -6,9 +6,9 @@ import math
 from hnr_planner.core import BallSpace, BoxSpace, DifferenceSpace, OracleSpace, Space, UnionSpace
 from hnr_planner.core.spaces.oracle_data import COARSE
 from hnr_planner.core.spaces.primitives import (
-    blocked_before,
     contains,
     exit_beyond,
+    first_blocked,
     first_entry,
     first_exit,
     line_touches,
@@ -42,7 +42,7 @@ def _is_in_ring(x: NDArray) -> bool:
 SPACES = {
     'solids': _solids,
     'union': lambda: UnionSpace(BoxSpace((0, 0), (2, 1)), BallSpace((2, 1), 0.7)),
-    'oracle': lambda: OracleSpace(_is_in_ring, (-1.1, -1.2), (1.2, 1.1), resolution=0.05),
+    'oracle': lambda: OracleSpace(_is_in_ring, (-1.1, -1.2), (1.2, 1.1), resolution=0.08),
 }
 
 
@@ -63,22 +63,27 @@ def test_an_exit_beyond_a_parameter_is_the_exit(name: str) -> None:
 
     Where a space looks at few points only, the others tell how far the ray is free.
     """
-    space = SPACES[name]()
-    beyond = 0
+    space, rng = SPACES[name](), np.random.default_rng(7)
+    beyond = rough = 0
     for x, u, t in _lines(space):
         end = first_exit.interpreted(space.data, x, u, 0.0, math.inf)
         found = exit_beyond.interpreted(space.data, x, u, t)
-        blocked = blocked_before.interpreted(space.data, x, u, found)
         if isinstance(space, OracleSpace):
             step = space.resolution / np.linalg.norm(u)
             assert found <= t or found > end - COARSE * step
-            assert (blocked < math.inf) == (found > end + step) or abs(found - end) < step
-            assert blocked == math.inf or end - space.margin <= blocked <= found
         else:
             assert abs(found - end) * np.linalg.norm(u) <= space.margin if end > t else found <= t
-            assert blocked == math.inf
         beyond += end > t
+        y = x + rng.uniform(0.5, 1.0) * found * u
+        if found > t and contains.interpreted(space.data, y):
+            blocked = first_blocked.interpreted(space.data, x, y)
+            assert (blocked == math.inf) == segment_is_free.interpreted(space.data, x, y)
+            assert blocked == math.inf or not contains.interpreted(
+                space.data, x + blocked * (y - x)
+            )
+            rough += blocked < math.inf
     assert 5 < beyond < N_LINES - 5
+    assert (rough > 0) == isinstance(space, OracleSpace)
 
 
 @pytest.mark.parametrize('name', SPACES)
@@ -92,6 +97,23 @@ def test_a_segment_is_free_where_the_exit_is_beyond_its_end(name: str) -> None:
         assert is_free == (contains.interpreted(space.data, x + u) and end > 1.0)
         free += is_free
     assert free > 5
+
+
+def test_a_search_tests_the_same_points_in_both_directions() -> None:
+    """
+    A planner may test a step from its end, and the path is free in the other direction, too.
+
+    The tests are so far apart that segments pass between them through the hole of the ring.
+    """
+    space = OracleSpace(_is_in_ring, (-1.1, -1.2), (1.2, 1.1), resolution=0.4)
+    rng = np.random.default_rng(11)
+    free = 0
+    for _ in range(40 * N_LINES):
+        a, b = rng.uniform(*space.kernel_bounds, (2, 2))
+        is_free = segment_is_free.interpreted(space.data, a, b)
+        assert segment_is_free.interpreted(space.data, b, a) == is_free
+        free += is_free
+    assert free > N_LINES
 
 
 def test_a_line_touches_what_it_enters_up_to_the_end() -> None:

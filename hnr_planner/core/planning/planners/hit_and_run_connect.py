@@ -35,10 +35,11 @@ from hnr_planner.core.planning.planners.two_trees import (
 )
 from hnr_planner.core.sampling.draws import REDRAWS_MAX, try_between
 from hnr_planner.core.spaces.lines import draw_direction
+from hnr_planner.core.spaces.oracle_data import OracleData
 from hnr_planner.core.spaces.primitives import (
-    blocked_before,
     component,
     exit_beyond,
+    first_blocked,
     segment_is_free,
 )
 from hnr_planner.core.trees import NONE
@@ -46,10 +47,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 #: Number of uniform directions that a step chooses from, and fraction of the longest ray that it
-#: skips: the best of 1 to 6 and of 0 to .9 on building maps and spirals. In 3 to 7 dimensions .6
-#: finds paths through holes a little sooner, and longer ones among balls.
-N_RAYS = 4
-INNER = 0.7
+#: skips: in the plane the best of 1 to 6 and of 0 to .9 on building maps and spirals, in more
+#: dimensions those of 1 to 16 and of 0 to .7 on walls with holes, among balls and for an arm.
+N_RAYS, N_RAYS_IN_SPACE = 4, 8
+INNER, INNER_IN_SPACE = 0.7, 0.5
 #: Bins around that of a new vertex whose vertices of the other tree are tested, on each side, and
 #: number of those drawn uniformly: in the plane, and in more dimensions, where bins, which are of
 #: the first two coordinates, say little of what is near, and a segment costs less than a step
@@ -101,6 +102,17 @@ class HitAndRunConnectSearch(TwoTreeSearch):
     _table: TreePair | None = field(init=False, default=None)
     #: None before the first steps, and where they solved the search.
     _trees: FrontierTrees | None = field(init=False, default=None)
+
+    @property
+    def tested(self) -> bool:
+        """
+        Whether every segment of the path has been tested as ``segment_is_free`` tests it.
+
+        Where a space tests points only, steps are tested like that, and to test them again takes
+        as long as a third of the search. Elsewhere a step ends on a ray known to be free.
+        """
+        space = self.problem.space
+        return isinstance(space, OracleData) and space.tests_points and self._ends[1] != NONE
 
     @property
     def counts(self) -> dict[str, int]:
@@ -198,35 +210,36 @@ def _grow(problem, trees, rng, turn, n_iterations):
 @kernel
 def _step(space, x, rng, directions, y):
     """
-    Step from ``x`` (dim,) along the longest of ``N_RAYS`` uniform rays; write the end ``y``.
+    Step from ``x`` (dim,) along the longest of a few uniform rays; write the end ``y``.
 
-    The end is uniform on the ray beyond the fraction ``INNER``. Returns the number of redraws.
+    The end is uniform on the outer section of the ray. Returns the number of redraws.
     """
+    in_plane = len(x) <= 2
     u, best, longest = directions[0], directions[1], 0.0
-    for _ in range(N_RAYS):
+    for _ in range(N_RAYS if in_plane else N_RAYS_IN_SPACE):
         draw_direction(space, rng, u)
         reach = exit_beyond(space, x, u, longest)
         if reach > longest:
             longest = reach
             copy_into(best, u)
-    return _draw_on_ray(space, x, best, longest, rng, y)
+    return _draw_on_ray(space, x, best, INNER if in_plane else INNER_IN_SPACE, longest, rng, y)
 
 
 @kernel
-def _draw_on_ray(space, x, u, end, rng, y):
+def _draw_on_ray(space, x, u, inner, end, rng, y):
     """
-    Write a uniform point of a ray, from ``INNER * end`` to ``end``, into ``y``.
+    Write a uniform point of a ray, from ``inner * end`` to ``end``, into ``y``.
 
     It is drawn again where it is not free, or where the ray is found blocked before it, which then
     ends there. Returns the number of redraws; after ``REDRAWS_MAX`` redraws ``y`` is ``x``.
     """
     for redraws in range(REDRAWS_MAX):
-        s = try_between(space, x, u, INNER * end, end, rng, y)
+        s = try_between(space, x, u, inner * end, end, rng, y)
         if not math.isnan(s):
-            blocked = blocked_before(space, x, u, s)
+            blocked = first_blocked(space, x, y)
             if blocked == math.inf:
                 return redraws
-            end = blocked
+            end = blocked * s
     copy_into(y, x)
     return REDRAWS_MAX
 
@@ -245,7 +258,7 @@ def _meet(space, trees, row, bin_number, other, rng):
     Return the row of a vertex of tree ``other`` visible from vertex ``row``; NONE if not found.
 
     Tested are the newest vertices in the bin of number ``bin_number`` and, in the plane, in the 8
-    bins around it, and then vertices drawn uniformly.
+    bins around it, and then vertices drawn uniformly, or each of a tree that has no more.
     """
     vertices, size = trees.table.vertices, trees.table.sizes[other]
     if size == 0:
@@ -258,8 +271,10 @@ def _meet(space, trees, row, bin_number, other, rng):
             k = newest[other, bin_number + columns * below + beside]
             if k != NONE and segment_is_free(space, vertices[row], vertices[k]):
                 return k
-    for _ in range(N_UNIFORM if in_plane else N_UNIFORM_IN_SPACE):
-        k = trees.members[int(size * uniform(rng)), other]
+    n_uniform = N_UNIFORM if in_plane else N_UNIFORM_IN_SPACE
+    each = not in_plane and size <= n_uniform
+    for i in range(size if each else n_uniform):
+        k = trees.members[i if each else int(size * uniform(rng)), other]
         if segment_is_free(space, vertices[row], vertices[k]):
             return k
     return NONE
