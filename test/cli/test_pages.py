@@ -54,13 +54,13 @@ def run(command: list[str], folder: Path, mode: modes.Mode | None = None) -> str
 
 # What an experiment is made of, test/experiments/ runs, and how the command shows one,
 # test_experiment.py.
-@pytest.mark.interpreted
 @pytest.mark.parametrize(
     'page', ['map_files', 'sampling', pytest.param('measured', marks=pytest.mark.sweep)]
 )
 def test_commands_run_and_write_their_files(page: str, clone: Path) -> None:
+    """On grids, whose machine code is there; what else an experiment calls may be interpreted."""
     (block,) = blocks('bash', page)
-    out = run(['bash', '-ec', block], clone)
+    out = run(['bash', '-ec', block], clone, modes.Mode.AUTO)
     assert 'SOLVED' in out or 'points' in out or 'figure ' in out
     for name in re.findall(r'--plot (\S+)', block):
         check_picture(clone / name)
@@ -72,17 +72,24 @@ def test_commands_run_and_write_their_files(page: str, clone: Path) -> None:
         assert len((clone / name).read_text().splitlines()) == 5001
 
 
-@pytest.mark.interpreted
+# Two are of grids, whose machine code is there; what one calls of others is quicker interpreted.
 @pytest.mark.parametrize(
-    ('page', 'begins'),
+    ('page', 'mode', 'begins'),
     [
-        ('map_files', 'SOLVED path of'),
-        ('trajectories', 'SOLVED trajectory of'),
-        ('sampling', '(4, 1000, 6)\nconverged: R-hat at most 1.0'),
+        ('map_files', modes.Mode.AUTO, 'SOLVED path of'),
+        ('trajectories', modes.Mode.AUTO, 'SOLVED trajectory of'),
+        (
+            'sampling',
+            modes.Mode.INTERPRETED,
+            '(4, 1000, 6)\nconverged: R-hat at most 1.0',
+        ),
     ],
 )
-def test_first_python_of_a_page_runs(page: str, begins: str, clone: Path) -> None:
-    assert run([sys.executable, '-c', blocks('python', page)[0]], clone).startswith(begins)
+def test_first_python_of_a_page_runs(
+    page: str, mode: modes.Mode, begins: str, clone: Path
+) -> None:
+    program = blocks('python', page)[0]
+    assert run([sys.executable, '-c', program], clone, mode).startswith(begins)
 
 
 def test_other_python_runs_and_prints_what_the_pages_say(clone: Path) -> None:
