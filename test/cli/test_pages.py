@@ -58,9 +58,8 @@ def run(command: list[str], folder: Path, mode: modes.Mode | None = None) -> str
     'page', ['map_files', 'sampling', pytest.param('measured', marks=pytest.mark.sweep)]
 )
 def test_commands_run_and_write_their_files(page: str, clone: Path) -> None:
-    """On grids, whose machine code is there; what else an experiment calls may be interpreted."""
     (block,) = blocks('bash', page)
-    out = run(['bash', '-ec', block], clone, modes.Mode.AUTO)
+    out = run(['bash', '-ec', block], clone)
     assert 'SOLVED' in out or 'points' in out or 'figure ' in out
     for name in re.findall(r'--plot (\S+)', block):
         check_picture(clone / name)
@@ -72,24 +71,21 @@ def test_commands_run_and_write_their_files(page: str, clone: Path) -> None:
         assert len((clone / name).read_text().splitlines()) == 5001
 
 
-# Two are of grids, whose machine code is there; what one calls of others is quicker interpreted.
+# What has no mark is of grids, whose machine code is there.
 @pytest.mark.parametrize(
-    ('page', 'mode', 'begins'),
+    ('page', 'begins'),
     [
-        ('map_files', modes.Mode.AUTO, 'SOLVED path of'),
-        ('trajectories', modes.Mode.AUTO, 'SOLVED trajectory of'),
-        (
+        ('map_files', 'SOLVED path of'),
+        ('trajectories', 'SOLVED trajectory of'),
+        pytest.param(
             'sampling',
-            modes.Mode.INTERPRETED,
             '(4, 1000, 6)\nconverged: R-hat at most 1.0',
+            marks=pytest.mark.interpreted,
         ),
     ],
 )
-def test_first_python_of_a_page_runs(
-    page: str, mode: modes.Mode, begins: str, clone: Path
-) -> None:
-    program = blocks('python', page)[0]
-    assert run([sys.executable, '-c', program], clone, mode).startswith(begins)
+def test_first_python_of_a_page_runs(page: str, begins: str, clone: Path) -> None:
+    assert run([sys.executable, '-c', blocks('python', page)[0]], clone).startswith(begins)
 
 
 def test_other_python_runs_and_prints_what_the_pages_say(clone: Path) -> None:

@@ -1,4 +1,4 @@
-"""QoS profiles; this module is for nodes that plan nothing, too, and imports nothing large."""
+"""QoS profiles, for what plans nothing as well: so nothing large is imported here."""
 
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 
