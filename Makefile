@@ -16,6 +16,9 @@ ALL := .venv/installed
 unexport AMENT_PREFIX_PATH LD_LIBRARY_PATH PYTHONHOME PYTHONPATH RMW_IMPLEMENTATION
 unexport _ROS_WHEELS_BOOTSTRAP_COMPLETE
 
+# Tests start some two hundred processes; each would compile all sources again, for .2 s.
+unexport PYTHONDONTWRITEBYTECODE
+
 # A clone that was moved or copied has a .venv that still points at the old place.
 ifneq ($(shell cat $(DEMO) 2>/dev/null),$(CURDIR))
 $(shell rm -f $(DEMO) $(TEST) $(ALL))

@@ -9,6 +9,9 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+#: Algorithms of the requests, and their names in the picture.
+ALGORITHMS = {'hit_and_run': 'Hit-and-Run', 'rrt': 'RRT'}
+
 
 @dataclass(frozen=True, eq=False)
 class Answer:

@@ -16,9 +16,8 @@ from typing import Any
 
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from geometry_msgs.msg import PoseStamped
-from hnr_planner.demo.answer import Answer
-from hnr_planner.demo.scene import ALGORITHMS
-from hnr_planner.ros.interfaces.publisher import latched
+from hnr_planner.demo.answer import ALGORITHMS, Answer
+from hnr_planner.ros.interfaces.profiles import latched
 from hnr_planner.ros.messages.outcomes import read_outcome
 from nav_msgs.msg import Path as PathMessage
 from nav_msgs.srv import GetPlan

@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from hnr_planner import drawing
-from hnr_planner.demo.answer import Answer
+from hnr_planner.demo.answer import ALGORITHMS, Answer
 from hnr_planner.demo.check import Check
-from hnr_planner.demo.scene import ALGORITHMS, Scene
+from hnr_planner.demo.scene import Scene
 
 #: Headings of the table.
 HEADINGS = ('algorithm', 'status', 'transitions', 'time', 'length', 'min. clearance', 'path check')
@@ -56,6 +55,8 @@ def aligned(rows: Sequence[Sequence[str]]) -> str:
 
 def draw(scene: Scene, answers: dict[str, Answer], file: Path) -> None:
     """Draw map, samples and path of each answer, side by side, into a file."""
+    from hnr_planner import drawing  # needed at the end only
+
     plans = [
         drawing.Plan(
             _title(algorithm, answer),

@@ -10,11 +10,11 @@ import sys
 from tempfile import TemporaryDirectory
 import time
 
-from hnr_planner.demo.answer import Answer
+from hnr_planner.demo.answer import ALGORITHMS, Answer
 from hnr_planner.demo.check import Check, check_path
 from hnr_planner.demo.processes import free_domain, Interruptions, ProcessError, Processes, Screen
 from hnr_planner.demo.report import draw, table
-from hnr_planner.demo.scene import ALGORITHMS, choose_scene, Scene
+from hnr_planner.demo.scene import choose_scene, Scene
 import numpy as np
 
 #: Time limit of the planner for each request [s].

@@ -11,8 +11,6 @@ from hnr_planner.maps import load_map, OccupancyMap
 import numpy as np
 from numpy.typing import NDArray
 
-#: Algorithms of the requests, and their names in the picture.
-ALGORITHMS = {'hit_and_run': 'Hit-and-Run', 'rrt': 'RRT'}
 #: The map of the package.
 OFFICE = Path('config', 'maps', 'office.yaml')
 #: Radius of the robot [m].

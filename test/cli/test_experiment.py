@@ -15,8 +15,14 @@ def test_help_lists_every_experiment(run: Callable[..., Ran]) -> None:
         assert f'  {entry.name} ' in text and entry.summary in text
 
 
+@pytest.fixture(scope='module')
+def measured(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return a new folder for the measurements of all tests here."""
+    return tmp_path_factory.mktemp('experiment') / 'new' / 'folder'
+
+
 def test_it_writes_prints_and_shows(
-    run: Callable[..., Ran], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    run: Callable[..., Ran], measured: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     shown = tmp_path / 'shown'
     browser = tmp_path / 'browser'
@@ -25,16 +31,15 @@ def test_it_writes_prints_and_shows(
     )
     browser.chmod(0o755)
     monkeypatch.setenv('BROWSER', f'{browser} %s')
-    out = tmp_path / 'new' / 'folder'
-    ran = run('experiment', 'clouds', '--runs', 1, '--out', out, '--jobs', 1, '--show')
+    ran = run('experiment', 'clouds', '--runs', 1, '--out', measured, '--jobs', 1, '--show')
     assert ran.code == 0
     assert '| 1.2, RRT |' in ran.out
-    assert (out / 'clouds.csv').read_text().startswith('width,algorithm,seed,transitions,')
-    assert shown.read_text() == (out / 'clouds.svg').as_uri()
+    assert (measured / 'clouds.csv').read_text().startswith('width,algorithm,seed,transitions,')
+    assert shown.read_text() == (measured / 'clouds.svg').as_uri()
 
 
-def test_without_a_browser_it_says_so(tmp_path: Path) -> None:
-    command = ['experiment', 'clouds', '--runs', 1, '--out', tmp_path, '--jobs', 1, '--show']
+def test_without_a_browser_it_says_so(measured: Path) -> None:
+    command = ['experiment', 'clouds', '--runs', 1, '--out', measured, '--jobs', 1, '--show']
     ran = run_process(*command, BROWSER='/nonexistent', PATH='', DISPLAY='')
     assert ran.code == 0
     assert ran.err.endswith('no browser was found to show it\n')

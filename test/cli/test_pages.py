@@ -54,7 +54,6 @@ def run(command: list[str], folder: Path, mode: modes.Mode | None = None) -> str
 
 # What an experiment is made of, test/experiments/ runs, and how the command shows one,
 # test_experiment.py.
-@pytest.mark.interpreted
 @pytest.mark.parametrize(
     'page', ['map_files', 'sampling', pytest.param('measured', marks=pytest.mark.sweep)]
 )
@@ -72,13 +71,17 @@ def test_commands_run_and_write_their_files(page: str, clone: Path) -> None:
         assert len((clone / name).read_text().splitlines()) == 5001
 
 
-@pytest.mark.interpreted
+# What has no mark is of grids, whose machine code is there.
 @pytest.mark.parametrize(
     ('page', 'begins'),
     [
         ('map_files', 'SOLVED path of'),
         ('trajectories', 'SOLVED trajectory of'),
-        ('sampling', '(4, 1000, 6)\nconverged: R-hat at most 1.0'),
+        pytest.param(
+            'sampling',
+            '(4, 1000, 6)\nconverged: R-hat at most 1.0',
+            marks=pytest.mark.interpreted,
+        ),
     ],
 )
 def test_first_python_of_a_page_runs(page: str, begins: str, clone: Path) -> None:

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from pathlib import Path
+from test.fresh_python import run_and_list_imports
 from test.ros.harness import (
     Client,
     from_corner,
@@ -137,3 +138,9 @@ def test_broken_file_at_the_start_is_one_line_and_exit_code_1(
         assert process.popen.wait(SOON) == 1
         (line,) = process.log.splitlines(keepends=True)
         assert words in line and 'Traceback' not in line
+
+
+def test_processes_that_plan_nothing_import_no_compiler() -> None:
+    modules = 'hnr_planner.ros.node.map_node, hnr_planner.demo.client'
+    _, packages = run_and_list_imports(f'import {modules}')
+    assert packages.isdisjoint({'numba', 'llvmlite', 'scipy', 'matplotlib'})

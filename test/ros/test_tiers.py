@@ -26,7 +26,7 @@ MISSING = '_components_of_ends'
 #: No clock cuts anything here, so the same seed gives the same path.
 SETTINGS = {'time_limit': PATIENCE, 'optimize_for': 0.0, 'seed': 7}
 #: A search that needs few kernels.
-SIMPLE = {'algorithm': 'rrt_connect', 'simplify': False}
+SIMPLE = {'algorithm': 'hit_and_run', 'simplify': False}
 
 
 @contextmanager

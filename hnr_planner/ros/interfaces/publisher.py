@@ -11,6 +11,7 @@ import time
 from builtin_interfaces.msg import Time as TimeMessage
 from diagnostic_msgs.msg import DiagnosticArray
 from hnr_planner.ros.interfaces.pictures import PicturePublisher
+from hnr_planner.ros.interfaces.profiles import latched
 from hnr_planner.ros.interfaces.publications import Publication, TOPICS
 from hnr_planner.ros.messages.outcomes import outcome_message
 from hnr_planner.server.parameters.settings import MOST_ALTERNATIVES
@@ -21,7 +22,6 @@ from rclpy.clock import Clock
 from rclpy.duration import Duration
 from rclpy.event_handler import PublisherEventCallbacks
 from rclpy.node import Node
-from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.time import Time
 
 #: Number of the latest outcomes, and of paths of the latest request, that late subscribers get.
@@ -43,15 +43,6 @@ PICTURES = ('samples', 'markers')
 
 #: With more publications waiting, samples and markers (pictures for people) are left out.
 LONGEST_BACKLOG = 20
-
-
-def latched(depth: int) -> QoSProfile:
-    """Return the profile of a topic whose last ``depth`` messages reach late subscribers."""
-    return QoSProfile(
-        depth=depth,
-        durability=DurabilityPolicy.TRANSIENT_LOCAL,
-        reliability=ReliabilityPolicy.RELIABLE,
-    )
 
 
 class Publisher:

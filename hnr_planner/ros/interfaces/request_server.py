@@ -5,8 +5,9 @@ import threading
 from typing import NamedTuple
 
 from builtin_interfaces.msg import Time
+from hnr_planner.ros.interfaces.profiles import latched
 from hnr_planner.ros.interfaces.publications import PlanPublication, SamplePublication
-from hnr_planner.ros.interfaces.publisher import latched, NO_EVENTS, Publisher
+from hnr_planner.ros.interfaces.publisher import NO_EVENTS, Publisher
 from hnr_planner.server.map.waiting import NewestMap
 from hnr_planner.server.parameters.settings import Settings
 from hnr_planner.server.planning.respond import ToFrame

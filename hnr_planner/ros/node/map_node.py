@@ -7,10 +7,10 @@ from typing import NoReturn
 import warnings
 
 from hnr_planner.maps import load_map, MapFileError, MapFileWarning, OccupancyMap
-from hnr_planner.ros.interfaces.publisher import latched
+from hnr_planner.ros.interfaces.profiles import latched
 from hnr_planner.ros.messages.maps import message_from_map
-from hnr_planner.ros.node.parameters import warn_of_unknown_parameters
 from hnr_planner.ros.node.process import run
+from hnr_planner.ros.node.unknown_parameters import warn_of_unknown_parameters
 from hnr_planner.server.responses.request_log import shortened
 from nav_msgs.msg import OccupancyGrid
 from nav_msgs.srv import GetMap

@@ -14,8 +14,9 @@ from hnr_planner.ros.messages.plan_responses import PlanResponses
 from hnr_planner.ros.node.bond import NodeBond
 from hnr_planner.ros.node.callback_group import BoundedCallbackGroup
 from hnr_planner.ros.node.managed_node import ManagedNode
-from hnr_planner.ros.node.parameters import Parameters, warn_of_unknown_parameters
+from hnr_planner.ros.node.parameters import Parameters
 from hnr_planner.ros.node.transforms import Transforms
+from hnr_planner.ros.node.unknown_parameters import warn_of_unknown_parameters
 from hnr_planner.ros.node.watch_process import WatchProcess
 from hnr_planner.server.map.map_store import MapSnapshot
 from hnr_planner.server.parameters.settings import Settings

@@ -1,11 +1,15 @@
 """The times that the phases of a request took."""
 
+from __future__ import annotations
+
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 import time
+from typing import TYPE_CHECKING
 
-from hnr_planner.core.planning.result import SearchResult
+if TYPE_CHECKING:
+    from hnr_planner.core.planning.result import SearchResult
 
 
 @dataclass

@@ -1,12 +1,16 @@
 """The base of the responses to requests: how a request ended, and how long it took."""
 
+from __future__ import annotations
+
 from abc import ABC, abstractmethod
 from dataclasses import dataclass, field, replace
-from typing import Self
+from typing import Self, TYPE_CHECKING
 
-from hnr_planner.server.map.map_store import MapSnapshot
 from hnr_planner.server.requests.outcomes import Outcome
 from hnr_planner.server.requests.times import Times
+
+if TYPE_CHECKING:
+    from hnr_planner.server.map.map_store import MapSnapshot
 
 
 @dataclass(frozen=True)

@@ -106,8 +106,9 @@ def test_clients_that_vanish_leave_the_node_to_others(tmp_path: Path, tell: Tell
     count = 0
     with (
         callers(1) as (other,),
-        searching(tmp_path, [other], time_limit=5.0) as (planner, _),
+        searching(tmp_path, [], time_limit=5.0) as (planner, _),
     ):
+        other.ask_again_until_answered(SHORT)
         with client_of(planner) as client:
             for _ in range(EFFORT.rounds):
                 client.wait_for_running(0)
