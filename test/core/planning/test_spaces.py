@@ -216,6 +216,15 @@ def test_scenes_are_what_they_are_said_to_be(name: str):
     assert not space.is_motion_valid(start, goal)
 
 
+@pytest.mark.parametrize('seed', range(6))
+def test_a_path_that_the_search_tested_is_free_in_both_directions(seed: int):
+    """It is not tested again at the end, where points are all that a space can test."""
+    space, _, start, goal, _, _ = slit()
+    path = plan(space, start, goal, seed=seed, simplify=False).path
+    assert len(path) > 2
+    assert space.is_path_free(path) and space.is_path_free(path[::-1])
+
+
 @pytest.mark.parametrize(
     ('name', 'algorithm'),
     [
