@@ -74,13 +74,15 @@ def test_an_exit_beyond_a_parameter_is_the_exit(name: str) -> None:
         else:
             assert abs(found - end) * np.linalg.norm(u) <= space.margin if end > t else found <= t
         beyond += end > t
-        y = x + rng.uniform(0.5, 1.0) * found * u
+        s = rng.uniform(0.5, 1.0) * found
+        y = x + s * u
         if found > t and contains.interpreted(space.data, y):
             blocked = first_blocked.interpreted(space.data, x, y)
             assert (blocked == math.inf) == segment_is_free.interpreted(space.data, x, y)
             assert blocked == math.inf or not contains.interpreted(
                 space.data, x + blocked * (y - x)
             )
+            assert blocked == math.inf or end - space.margin <= blocked * s <= s
             rough += blocked < math.inf
     assert 5 < beyond < N_LINES - 5
     assert (rough > 0) == isinstance(space, OracleSpace)
