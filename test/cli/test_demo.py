@@ -9,6 +9,7 @@ import subprocess
 import sys
 from test.cli.conftest import REAL_MAPS, ROOT
 from test.cli.pictures import check_picture
+from test.sweeps import sweep
 import uuid
 
 from hnr_planner import drawing
@@ -118,12 +119,12 @@ def test_demo_on_a_real_map(start, file: Path) -> None:
     check_success(start('--map', file))
 
 
-# Each signal and each moment once: one handler takes them all.
+# One handler takes them all: the others are sweeps.
 @pytest.mark.parametrize(
     ('moment', 'number'),
     [
         ('robot radius', signal.SIGINT),
-        ('starting the map source', signal.SIGHUP),
+        sweep('starting the map source', signal.SIGHUP),
         ('preparing', signal.SIGTERM),
     ],
 )
@@ -161,8 +162,10 @@ sys.exit(client.main(['--start', '0', '0', '--goal', '1', '1']))
 
 @pytest.mark.parametrize(
     ('node', 'moment'),
-    [('map_node', 'ros2 service call'), ('planner_node', 'planner  preparing')],
-    ids=['kept', 'not yet asked'],
+    [
+        sweep('map_node', 'ros2 service call', name='kept'),
+        pytest.param('planner_node', 'planner  preparing', id='not yet asked'),
+    ],
 )
 def test_death_of_a_node_is_reported(start, rooms_file: Path, node: str, moment: str) -> None:
     demo = start('--keep', '--map', rooms_file)

@@ -1,8 +1,12 @@
-"""The life of the node: every state, every transition, and what is answered in each."""
+"""
+The life of the node: every state, every transition, and what is answered in each.
+
+The tests share a node, which each of them finds unconfigured; the last one ends it.
+"""
 
 from collections.abc import Iterator
+from contextlib import contextmanager
 from importlib.util import find_spec
-from pathlib import Path
 import signal
 import subprocess
 import sys
@@ -24,7 +28,6 @@ from hnr_planner.server.requests.outcomes import Outcome
 from lifecycle_msgs.msg import Transition
 from lifecycle_msgs.srv import ChangeState, GetState
 import pytest
-from rclpy.duration import Duration
 
 START, GOAL = pose(0.5, 0.6), pose(4.5, 0.7)
 UNCONFIGURED, INACTIVE, ACTIVE, FINALIZED = 'unconfigured', 'inactive', 'active', 'finalized'
@@ -36,28 +39,25 @@ SHUTDOWN = {
     ACTIVE: Transition.TRANSITION_ACTIVE_SHUTDOWN,
 }
 
-#: Transitions that lead to each state from the first one.
-WAY_TO = {
-    UNCONFIGURED: (),
-    INACTIVE: (CONFIGURE,),
-    ACTIVE: (CONFIGURE, ACTIVATE),
-    FINALIZED: (SHUTDOWN[UNCONFIGURED],),
-}
+#: Transitions that lead from each state to the first one.
+WAY_BACK = {ACTIVE: (DEACTIVATE, CLEANUP), INACTIVE: (CLEANUP,), UNCONFIGURED: ()}
+#: Draws that take hours, and so end by a cancellation; and the usual ones.
+ENDLESS = {'sample_count': 1_000_000, 'sample_thin': 100_000, 'time_limit': 60.0}
+USUAL = {'sample_count': 1000, 'sample_thin': 1, 'time_limit': 1.0}
 
 
-@pytest.fixture
-def planner(tmp_path: Path) -> Iterator[NodeProcess]:
+@pytest.fixture(scope='module')
+def planner(tmp_path_factory: pytest.TempPathFactory) -> Iterator[NodeProcess]:
     """Run a planning node that waits for transitions from outside."""
-    with node_process('planner_node', tmp_path / 'log', autostart=False) as process:
+    log = tmp_path_factory.mktemp('planner') / 'log'
+    with node_process('planner_node', log, autostart=False) as process:
         yield process
 
 
-@pytest.fixture
-def client(planner: NodeProcess) -> Iterator[Client]:
-    """Return a client of that node."""
-    client = Client()
-    yield client
-    client.close()
+@pytest.fixture(autouse=True)
+def unconfigured(client: Client) -> None:
+    """Lead the node back from where the test before left it."""
+    assert all(change(client, *WAY_BACK[state(client)]))
 
 
 def change(client: Client, *transitions: int) -> list[bool]:
@@ -92,57 +92,25 @@ def outcome_of_both(client: Client) -> Outcome:
     return ended
 
 
+def set_radius(client: Client, radius: float) -> None:
+    """Set a parameter, which then has its value."""
+    (answer,) = client.set_parameters(robot_radius=radius)
+    assert answer.successful, answer.reason
+    assert client.get_parameters('robot_radius') == [radius]
+
+
+@contextmanager
+def new_map(planner: NodeProcess) -> Iterator[None]:
+    """Wait, at the end of a ``with`` block, for a map that came since its beginning."""
+    received = planner.log.count('map received')
+    yield
+    until(lambda: planner.log.count('map received') > received, 'a map')
+
+
 def health(client: Client) -> str:
     """Return what the node says of itself from now on."""
     heard = client.listen(DiagnosticArray, '/diagnostics', MANY)
     return until(lambda: heard, 'a report of health')[0].status[0].message
-
-
-def test_node_starts_itself_by_default(tmp_path: Path) -> None:
-    with node_process('planner_node', tmp_path / 'log'):
-        client = Client()
-        assert state(client) == ACTIVE
-        assert outcome(client) is Outcome.NO_MAP
-        client.close()
-
-
-def test_every_state_answers_at_once_and_only_the_active_one_plans(
-    client: Client, planner: NodeProcess
-) -> None:
-    client.publish_map(grid_message(two_rooms()))
-    assert state(client) == UNCONFIGURED
-    assert outcome_of_both(client) is Outcome.NOT_ACTIVE
-    assert health(client).startswith('NOT_ACTIVE')
-
-    assert change(client, CONFIGURE) == [True]
-    assert state(client) == INACTIVE
-    planner.wait_for('map received')
-    assert outcome_of_both(client) is Outcome.NOT_ACTIVE
-
-    assert change(client, ACTIVATE) == [True]
-    assert state(client) == ACTIVE
-    assert outcome_of_both(client) is Outcome.SOLVED
-    assert health(client) == 'ready'
-
-    assert change(client, DEACTIVATE) == [True]
-    assert outcome_of_both(client) is Outcome.NOT_ACTIVE
-    assert change(client, ACTIVATE) == [True]
-    assert outcome_of_both(client) is Outcome.SOLVED, 'the map was kept'
-
-    assert change(client, DEACTIVATE, CLEANUP) == [True, True]
-    assert state(client) == UNCONFIGURED
-    assert outcome_of_both(client) is Outcome.NOT_ACTIVE
-
-    received = planner.log.count('map received')
-    assert change(client, CONFIGURE, ACTIVATE) == [True, True]
-    until(lambda: planner.log.count('map received') > received, 'the latched map again')
-    assert outcome_of_both(client) is Outcome.SOLVED
-
-    assert change(client, SHUTDOWN[ACTIVE]) == [True]
-    assert state(client) == FINALIZED
-    assert outcome_of_both(client) is Outcome.NOT_ACTIVE
-    assert planner.end(signal.SIGTERM) == 0
-    assert 'Traceback' not in planner.log
 
 
 def test_transition_that_the_state_does_not_allow_is_refused_and_changes_nothing(
@@ -163,9 +131,9 @@ def test_transition_that_the_state_does_not_allow_is_refused_and_changes_nothing
 
 def test_deactivation_ends_searches(client: Client, planner: NodeProcess) -> None:
     change(client, CONFIGURE, ACTIVATE)
-    client.set_parameters(time_limit=60.0, sample_count=1_000_000, sample_thin=100_000)
-    client.publish_map(grid_message(maze()))
-    planner.wait_for('map received')
+    client.set_parameters(**ENDLESS)
+    with new_map(planner):
+        client.publish_map(grid_message(maze()))
     ends = pose(0.025, 0.025), pose(20, 20)
     futures = [client.send_plan(*ends, service='plan_hit_and_run') for _ in range(3)]
     sampling = client.send_sample()
@@ -177,64 +145,21 @@ def test_deactivation_ends_searches(client: Client, planner: NodeProcess) -> Non
         assert client.outcome_of(path)[0] is Outcome.CANCELLED
     assert client.outcome_of(result_of(sampling))[0] is Outcome.CANCELLED
     assert outcome(client) is Outcome.NOT_ACTIVE
+    client.set_parameters(**USUAL)
 
 
-def test_bond_lives_while_the_node_is_active(client: Client, planner: NodeProcess) -> None:
-    if find_spec('bondpy') is None:
-        change(client, CONFIGURE, ACTIVATE)
-        planner.wait_for('bond_timeout')
-        return
-    from bond.msg import Status
-    from bondpy.bondpy import Bond
-
-    heard = client.listen(Status, '/bond', MANY)
-    change(client, CONFIGURE)
-    for end in ((DEACTIVATE,), ()):
-        manager = Client()
-        bond = Bond(manager.node, '/bond', 'hnr_planner')
-        bond.heartbeat_timeout = 120.0
-        bond.start()
-        assert change(client, ACTIVATE) == [True]
-        assert bond.wait_until_formed(Duration(seconds=20))
-        assert any(message.active and message.instance_id != bond.instance_id for message in heard)
-        if end:
-            assert change(client, *end) == [True]
-        else:
-            assert planner.end(signal.SIGTERM) == 0
-        assert bond.wait_until_broken(Duration(seconds=20)), 'told, not missed'
-        manager.close()
-    assert 'Traceback' not in planner.log, planner.log
-
-
-@pytest.mark.skipif(find_spec('bondpy') is None, reason='bondpy comes with a ROS from apt only')
-def test_manager_resets_the_node_that_ends_under_its_bond(
-    client: Client, planner: NodeProcess
-) -> None:
-    """The calls of Nav2's lifecycle manager, in its order; each of them waits for a response."""
-    from bondpy.bondpy import Bond
-
-    assert change(client, CONFIGURE) == [True] and state(client) == INACTIVE
-    assert change(client, ACTIVATE) == [True] and state(client) == ACTIVE
-    manager = Client()
-    bond = Bond(manager.node, '/bond', 'hnr_planner')
-    bond.heartbeat_timeout = 120.0
-    bond.start()
-    assert bond.wait_until_formed(Duration(seconds=20))
-    planner.popen.send_signal(signal.SIGTERM)
-    assert bond.wait_until_broken(Duration(seconds=20))
-    assert change(client, DEACTIVATE) == [True] and state(client) == INACTIVE
-    assert change(client, CLEANUP) == [True]
-    assert planner.popen.wait(20.0) == 0
-    assert 'Traceback' not in planner.log, planner.log
-    manager.close()
+@pytest.mark.skipif(find_spec('bondpy') is not None, reason='there is a bond')
+def test_bond_that_cannot_be_is_on_the_log(client: Client, planner: NodeProcess) -> None:
+    change(client, CONFIGURE, ACTIVATE)
+    planner.wait_for('bond_timeout')
 
 
 def test_parameters_change_in_every_state(client: Client) -> None:
-    for transition in (CONFIGURE, ACTIVATE, DEACTIVATE, CLEANUP, SHUTDOWN[UNCONFIGURED]):
-        (answer,) = client.set_parameters(robot_radius=0.01 * transition)
-        assert answer.successful, answer.reason
+    """But the last one, which test_every_state_... has."""
+    for transition in (CONFIGURE, ACTIVATE, DEACTIVATE, CLEANUP):
+        set_radius(client, 0.01 * transition)
         assert change(client, transition) == [True]
-    assert client.get_parameters('robot_radius') == [0.01 * SHUTDOWN[UNCONFIGURED]]
+    set_radius(client, 0.0)
 
 
 def test_node_survives_many_changes_while_requests_come(
@@ -242,8 +167,8 @@ def test_node_survives_many_changes_while_requests_come(
 ) -> None:
     """Subscriptions come and go under the executor's eyes; every request is answered by name."""
     client.publish_map(grid_message(two_rooms()))
-    change(client, CONFIGURE, ACTIVATE)
-    planner.wait_for('map received')
+    with new_map(planner):
+        change(client, CONFIGURE, ACTIVATE)
     known = {Outcome.SOLVED, Outcome.NOT_ACTIVE, Outcome.NO_MAP, Outcome.MAP_NOT_READY}
     futures = []
     for turn in range(20):
@@ -295,20 +220,41 @@ def test_transition_that_fails_is_told_and_undone() -> None:
     assert 'ValueError: no power' in done.stderr
 
 
-# Each state and each signal: one handler takes both, and test_shutdown.py has both while active.
-@pytest.mark.parametrize(
-    ('where', 'number'),
-    [
-        (UNCONFIGURED, signal.SIGINT),
-        (INACTIVE, signal.SIGTERM),
-        (FINALIZED, signal.SIGINT),
-    ],
-)
-def test_signal_in_a_state_that_does_not_plan_is_a_clean_end(
-    client: Client, planner: NodeProcess, where: str, number: signal.Signals
+def test_every_state_answers_at_once_and_only_the_active_one_plans(
+    client: Client, planner: NodeProcess
 ) -> None:
-    change(client, *WAY_TO[where])
-    assert state(client) == where
-    assert planner.end(number) == 0, planner.log
-    for word in ('Traceback', 'ERROR', 'xception', 'ignored'):
-        assert word not in planner.log, planner.log
+    """Stands last: a shut down node does nothing more but end."""
+    client.publish_map(grid_message(two_rooms()))
+    assert state(client) == UNCONFIGURED
+    assert outcome_of_both(client) is Outcome.NOT_ACTIVE
+    assert health(client).startswith('NOT_ACTIVE')
+
+    with new_map(planner):
+        assert change(client, CONFIGURE) == [True]
+    assert state(client) == INACTIVE
+    assert outcome_of_both(client) is Outcome.NOT_ACTIVE
+
+    assert change(client, ACTIVATE) == [True]
+    assert state(client) == ACTIVE
+    assert outcome_of_both(client) is Outcome.SOLVED
+    assert health(client) == 'ready'
+
+    assert change(client, DEACTIVATE) == [True]
+    assert outcome_of_both(client) is Outcome.NOT_ACTIVE
+    assert change(client, ACTIVATE) == [True]
+    assert outcome_of_both(client) is Outcome.SOLVED, 'the map was kept'
+
+    assert change(client, DEACTIVATE, CLEANUP) == [True, True]
+    assert state(client) == UNCONFIGURED
+    assert outcome_of_both(client) is Outcome.NOT_ACTIVE
+
+    with new_map(planner):
+        assert change(client, CONFIGURE, ACTIVATE) == [True, True]
+    assert outcome_of_both(client) is Outcome.SOLVED
+
+    assert change(client, SHUTDOWN[ACTIVE]) == [True]
+    assert state(client) == FINALIZED
+    assert outcome_of_both(client) is Outcome.NOT_ACTIVE
+    set_radius(client, 0.1)
+    assert planner.end(signal.SIGTERM) == 0
+    assert 'Traceback' not in planner.log

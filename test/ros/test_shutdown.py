@@ -13,12 +13,15 @@ from test.ros.harness import (
     result_of,
     SOON,
 )
+from test.sweeps import sweep
 import time
 
 from hnr_planner.server.requests.outcomes import Outcome
 import pytest
 
-SIGNALS = [(SIGINT,), (SIGTERM,), (SIGINT, SIGINT), (SIGINT, SIGTERM)]
+# One handler takes both.
+BOTH = [(SIGINT,), (SIGTERM,)]
+TWICE = [(SIGINT, SIGINT), (SIGINT, SIGTERM)]
 
 #: Seconds: much less than a search would last, enough for a busy machine.
 AT_ONCE = 10.0
@@ -33,15 +36,13 @@ def assert_clean_end(process: NodeProcess, *signals: signal.Signals) -> None:
         assert word not in process.log, process.log
 
 
-@pytest.mark.parametrize('signals', SIGNALS[:2])
+@pytest.mark.parametrize('signals', [BOTH[0], sweep(BOTH[1])])
 def test_idle_node_ends_cleanly(tmp_path: Path, signals: tuple[signal.Signals, ...]) -> None:
     with node_process('planner_node', tmp_path / 'log') as process:
         assert_clean_end(process, *signals)
 
 
-@pytest.mark.parametrize(
-    'signals', [*SIGNALS[:3], pytest.param(SIGNALS[3], marks=pytest.mark.sweep)]
-)
+@pytest.mark.parametrize('signals', [sweep(BOTH[0]), BOTH[1], TWICE[0], sweep(TWICE[1])])
 def test_searching_node_answers_and_ends_cleanly(
     tmp_path: Path, signals: tuple[signal.Signals, ...]
 ) -> None:
@@ -64,7 +65,7 @@ def test_searching_node_answers_and_ends_cleanly(
             client.close()
 
 
-@pytest.mark.parametrize('signals', SIGNALS[:2])
+@pytest.mark.parametrize('signals', [BOTH[0], sweep(BOTH[1])])
 def test_node_that_was_just_started_ends_cleanly(
     tmp_path: Path, signals: tuple[signal.Signals, ...]
 ) -> None:
@@ -84,7 +85,7 @@ def test_parameter_that_cannot_be_ends_the_start_with_one_line(tmp_path: Path) -
     ('module', 'arguments', 'words'),
     [
         ('map_node', ('-p', 'yaml_filename:=5'), "'yaml_filename' to '5' of type 'INTEGER'"),
-        ('map_node', ('-p', 'frame_id:=3'), "'frame_id' to '3' of type 'INTEGER'"),
+        sweep('map_node', ('-p', 'frame_id:=3'), "'frame_id' to '3' of type 'INTEGER'"),
         ('planner_node', ('-p', 'use_sim_time:=5'), "'use_sim_time' to '5' of type 'INTEGER'"),
         ('planner_node', ('--foo',), "unknown arguments after --ros-args: ['--foo']"),
         ('planner_node', ('-p', 'time_limit:=soon'), "parameter 'time_limit'"),

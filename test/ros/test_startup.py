@@ -20,6 +20,7 @@ from test.ros.harness import (
 from hnr_planner.server.parameters.settings import RULES
 from hnr_planner.server.requests.outcomes import Outcome
 from hnr_planner.server.responses.request_log import LONGEST_LINE
+from lifecycle_msgs.srv import GetState
 import pytest
 
 #: A file with a name that is misspelt and one that is not.
@@ -56,6 +57,11 @@ def test_help_names_every_parameter_and_prepares_nothing() -> None:
 def test_ready_line_states_the_radius(planner: NodeProcess) -> None:
     (line,) = lines(planner, 'ready after')
     assert 'active, robot radius 0 m: /hnr_planner/plan,' in line
+
+
+def test_node_starts_itself_by_default(client: Client) -> None:
+    answer = client.call(GetState, '/hnr_planner/get_state', GetState.Request())
+    assert answer.current_state.label == 'active'
 
 
 def test_misspelt_parameter_is_warned_about_by_name(planner: NodeProcess, tmp_path: Path) -> None:

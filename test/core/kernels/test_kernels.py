@@ -73,6 +73,7 @@ def test_an_edited_space_is_never_answered_from_a_stale_cache(copy: Path, tmp_pa
     assert chord_of_copy(copy, tmp_path / 'cache') == 1.25
 
 
+@pytest.mark.sweep
 def test_a_cache_that_ignores_other_files_would_be_stale(copy: Path, tmp_path: Path):
     """Show that the test above can fail: it does with one folder for all sources."""
     core = copy / 'hnr_planner' / 'core'
@@ -182,6 +183,7 @@ def zigzag() -> np.ndarray:
     return chain
 
 
+@pytest.mark.sweep
 def test_alternatives():
     points, islands = zigzag(), islands_at(GRID.island_points)
     edges = both(class_graph.near_edges, GRID.data, points, np.arange(60), 8)

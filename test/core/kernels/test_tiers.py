@@ -8,6 +8,7 @@ fails when one does not come within ``PATIENCE``, and never because a machine is
 import os
 from pathlib import Path
 import signal
+from test.sweeps import sweep
 import time
 
 import pytest
@@ -48,6 +49,7 @@ def test_a_stream_of_calls_goes_over_to_machine_code_with_the_same_answers(start
     assert 'compilation is done: 4 kernels in' in logged[1]
 
 
+@pytest.mark.sweep
 def test_the_next_process_finds_what_this_one_compiled(start: Start):
     output(start(SWITCH))
     lines = output(
@@ -59,6 +61,7 @@ def test_the_next_process_finds_what_this_one_compiled(start: Start):
     assert lines == ['3.5 111 0', 'all kernels asked for are compiled']
 
 
+@pytest.mark.sweep
 def test_what_is_asked_for_while_the_child_works_comes_as_well(start: Start, tmp_path: Path):
     (tmp_path / 'open').touch()
     lines = output(
@@ -182,6 +185,7 @@ def test_a_child_that_compiles_ends_when_its_parent_is_killed(start: Start, tmp_
         time.sleep(0.01)
 
 
+@pytest.mark.sweep
 def test_a_child_ends_when_its_parent_ends(start: Start, tmp_path: Path):
     parent = start('samples.gated(1.0)\nsay("ASKED")\nsys.stdin.read()')
     (child,) = wait_for_gate(tmp_path)
@@ -216,8 +220,18 @@ def test_processes_that_start_together_compile_once(start: Start, tmp_path: Path
     assert wait_for_gate(tmp_path) == {compiling}
 
 
-def test_a_killed_child_leaves_no_lock_behind(start: Start, tmp_path: Path):
-    first = start('samples.gated(1.0)\nsys.stdin.read()')
+def test_a_killed_child_leaves_no_lock_behind_and_costs_one_line_of_log(
+    start: Start, tmp_path: Path
+):
+    first = start("""
+    samples.gated(1.0)
+    wait(lambda: compilation.status().running)
+    say('ASKED')
+    wait(lambda: not compilation.status().running and compilation.status().failed == 1)
+    say('ANSWER', samples.gated(2.0), samples.halved(3.0), samples.halved(3.0))
+    say('STATUS', compilation.status().tier, compilation.status())
+    """)
+    next_line(first, 'ASKED')
     (child,) = wait_for_gate(tmp_path)
     os.kill(child, signal.SIGKILL)
     second = start("""
@@ -227,35 +241,16 @@ def test_a_killed_child_leaves_no_lock_behind(start: Start, tmp_path: Path):
     wait_for_gate(tmp_path, 2)
     (tmp_path / 'open').touch()
     output(second)
-    assert any('runs interpreted' in line for line in output_after_return(first))
-
-
-def output_after_return(process):
-    """Let a script that reads its input to the end go on, and return what it prints."""
-    text, _ = process.communicate(timeout=PATIENCE)
-    return text.splitlines()
-
-
-# -- what can go wrong ----------------------------------------------------------------------------
-
-
-def test_a_killed_child_costs_one_line_of_log(start: Start, tmp_path: Path):
-    process = start("""
-    import os, signal
-    samples.gated(1.0)
-    wait(lambda: compilation.status().running)
-    os.kill(compilation._background.process.pid, signal.SIGKILL)
-    wait(lambda: not compilation.status().running and compilation.status().failed == 1)
-    say('ANSWER', samples.gated(2.0), samples.halved(3.0), samples.halved(3.0))
-    say('STATUS', compilation.status().tier, compilation.status())
-    """)
-    lines = output(process)
+    lines = output(first)
     assert 'ANSWER 2.0 1.5 1.5' in lines
     assert 'STATUS interpreted 1 kernels could not be compiled and run interpreted' in lines
     assert [line for line in lines if 'WARNING' in line] == [
         'LOG WARNING the process that compiles kernels ended (-9): '
         'what has no machine code yet runs interpreted'
     ]
+
+
+# -- what can go wrong ----------------------------------------------------------------------------
 
 
 def test_a_kernel_that_numba_refuses_stays_interpreted(start: Start):
@@ -273,6 +268,7 @@ def test_a_kernel_that_numba_refuses_stays_interpreted(start: Start):
     assert 'uncompilable stays interpreted: ' in warning
 
 
+@pytest.mark.sweep
 def test_without_a_folder_to_write_kernels_are_compiled_for_this_process(
     start: Start, tmp_path: Path
 ):
@@ -376,14 +372,14 @@ def test_a_child_whose_disk_is_full_says_so(start: Start, tmp_path: Path):
     )
 
 
-# Each damage and each mode once; the other two pairs are sweeps.
+# The one of most parts; the others are sweeps.
 @pytest.mark.parametrize(
     ('mode', 'damage'),
     [
         ('auto', 'a type that is gone'),
-        ('compiled', 'no index at all'),
-        pytest.param('auto', 'no index at all', marks=pytest.mark.sweep),
-        pytest.param('compiled', 'a type that is gone', marks=pytest.mark.sweep),
+        sweep('compiled', 'no index at all'),
+        sweep('auto', 'no index at all'),
+        sweep('compiled', 'a type that is gone'),
     ],
 )
 def test_a_cache_that_cannot_be_read_is_made_anew(

@@ -5,6 +5,7 @@ from functools import cache
 import os
 from test.core.planning.searches import plan
 from test.dense_check import collisions
+from test.sweeps import sweep
 from typing import NamedTuple
 
 from hnr_planner.core import (
@@ -201,6 +202,8 @@ SCENES = {
 #: Seeds of the searches; interpreted, one of them takes less time than the kernels to compile.
 SEEDS = range(3) if 'HNR_COMPILE_ALL' in os.environ else range(1)
 EVERY_PLANNER = ('balls, 2-D', 'balls, 3-D', 'balls, 6-D', 'star')
+#: Of these, what every planner does is a sweep.
+FURTHER = ('balls, 2-D', 'balls, 6-D', 'star')
 
 
 @pytest.mark.parametrize('name', SCENES)
@@ -228,9 +231,9 @@ def test_a_path_that_the_search_tested_is_free_in_both_directions(seed: int):
 @pytest.mark.parametrize(
     ('name', 'algorithm'),
     [
-        (name, algorithm)
+        sweep(name, algorithm) if algorithm != 'auto' and name in FURTHER else (name, algorithm)
         for name in SCENES
-        for algorithm in (NAMES if name in EVERY_PLANNER else ['auto'])
+        for algorithm in ('auto', *(NAMES if name in EVERY_PLANNER else ()))
     ],
 )
 def test_paths_are_free_and_end_where_they_should(name: str, algorithm: str):

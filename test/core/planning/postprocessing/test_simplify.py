@@ -122,6 +122,7 @@ assert len(first) > 2 and np.array_equal(first, second), (first, second)
 """
 
 
+@pytest.mark.sweep
 def test_compilation_does_not_count_in_the_time_limit(tmp_path: Path):
     environment = dict(os.environ, NUMBA_CACHE_DIR=str(tmp_path))
     done = subprocess.run(

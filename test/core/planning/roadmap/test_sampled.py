@@ -1,13 +1,17 @@
 """
 Roadmaps from samples: free and short paths, pure answers, as valid after a change as before.
 
-Any space of the plane may have one, a grid too, on which paths can be checked cell by cell.
+Any space of the plane may have one, a grid too, on which paths can be checked cell by cell. No
+user makes one of a grid, so nobody else needs its kernels: outside of the sweeps all runs
+interpreted, on a small map and with few draws.
 """
 
 from concurrent.futures import ThreadPoolExecutor
 from functools import cache
+import os
 from test.brute_force import path_collisions
 from test.laws import maps
+from test.sweeps import sweep, sweep_but
 import threading
 from typing import Any
 
@@ -19,6 +23,7 @@ from hnr_planner.core import (
     PlanResult,
     Roadmap,
 )
+from hnr_planner.core.planning.roadmap import sampled as module
 from hnr_planner.core.planning.roadmap.build import build_data
 from hnr_planner.core.planning.roadmap.data import empty_roadmap
 from hnr_planner.core.planning.roadmap.sampled import SampledRoadmap
@@ -31,8 +36,21 @@ import numpy as np
 from numpy.typing import NDArray
 import pytest
 
+pytestmark = pytest.mark.interpreted
+
 Bools = NDArray[np.bool_]
 Floats = NDArray[np.float64]
+
+#: Rows and columns of the map and of its rooms, draws of its roadmap, requests, other maps.
+SHAPE, N_DRAWS, N_REQUESTS, N_EXAMPLES = (
+    ((60, 80, 10), 4096, 50, 10) if 'HNR_COMPILE_ALL' in os.environ else ((30, 40, 10), 128, 15, 3)
+)
+
+
+@pytest.fixture(autouse=True)
+def number_of_draws(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Build roadmaps from so many draws."""
+    monkeypatch.setattr(module, 'N_DRAWS', N_DRAWS)
 
 
 def sampled(space: Space, seed: int, cancel: threading.Event | None = None) -> Roadmap:
@@ -40,9 +58,9 @@ def sampled(space: Space, seed: int, cancel: threading.Event | None = None) -> R
 
 
 RESOLUTION, ORIGIN = 0.1, (2.0, -1.0, 0.4)
-BLOCKED = maps.rooms(60, 80, 10, seed=4)
+BLOCKED = maps.rooms(*SHAPE, seed=4)
 SPACE = GridSpace.from_blocked(BLOCKED, RESOLUTION, ORIGIN)
-START, GOAL = SPACE.cell_centres(2, 2), SPACE.cell_centres(57, 75)
+START, GOAL = SPACE.cell_centres(2, 2), SPACE.cell_centres(SHAPE[0] - 3, SHAPE[1] - 5)
 
 
 def requests(space: GridSpace, n_requests: int, seed: int) -> Floats:
@@ -53,7 +71,9 @@ def requests(space: GridSpace, n_requests: int, seed: int) -> Floats:
     return space.cell_centres(cells[..., 0], cells[..., 1]) + shift
 
 
-def check_answers(roadmap: Roadmap, blocked: Bools, seed: int, n_requests: int = 50) -> None:
+def check_answers(
+    roadmap: Roadmap, blocked: Bools, seed: int, n_requests: int = N_REQUESTS
+) -> None:
     """Ask for paths; each is there exactly when there is one, free, and as the result says."""
     space = roadmap.space
     assert isinstance(space, GridSpace)
@@ -92,7 +112,7 @@ def same(a: PlanResult, b: PlanResult) -> bool:
 # -- paths ---------------------------------------------------------------------------------------
 
 
-@settings(max_examples=10, deadline=None, derandomize=True)
+@settings(max_examples=N_EXAMPLES, deadline=None, derandomize=True)
 @given(
     blocked=some.arrays(bool, st.tuples(st.integers(1, 20), st.integers(1, 20))),
     seed=st.integers(0, 1000),
@@ -104,6 +124,7 @@ def test_every_path_is_free_on_any_map(blocked: Bools, seed: int):
         check_answers(roadmap, blocked, seed)
 
 
+@pytest.mark.sweep
 @pytest.mark.parametrize('density', [0.01, 0.1, 0.3])
 def test_every_path_is_free_among_single_cells(density: float):
     blocked = maps.speckle(50, 70, density, seed=3)
@@ -111,6 +132,7 @@ def test_every_path_is_free_among_single_cells(density: float):
     check_answers(roadmap, blocked, seed=2, n_requests=200)
 
 
+@pytest.mark.sweep
 def test_paths_are_short_and_take_no_search():
     lengths, shortest = [], []
     for k, (start, goal) in enumerate(requests(SPACE, 30, seed=5)):
@@ -126,6 +148,7 @@ def test_paths_are_short_and_take_no_search():
     assert ratios.max() <= 1.05
 
 
+@pytest.mark.sweep
 @pytest.mark.parametrize('width', [0.4, 0.8, 1.6])
 def test_a_spiral_has_a_node_at_every_turn(width: float):
     problem = spiral(width)
@@ -151,7 +174,7 @@ def test_nodes_are_corners_of_obstacles():
 
 
 def test_a_region_is_reached_whether_its_centre_is_free_or_not():
-    blocked_centre = SPACE.cell_centres(55, 70)
+    blocked_centre = SPACE.cell_centres(SHAPE[0] - 5, SHAPE[1] - 10)
     assert not SPACE.contains(blocked_centre)
     for centre in (GOAL, blocked_centre):
         result = ask(shared(), START, centre, goal_radius=0.3)
@@ -167,7 +190,7 @@ def test_a_region_outside_the_map_is_reached_where_it_comes_in():
     assert path_collisions(result.path, BLOCKED, RESOLUTION, ORIGIN) == []
 
 
-@pytest.mark.parametrize('n_draws', [0, 1, 16, 64])
+@pytest.mark.parametrize('n_draws', sweep_but([0, 16], [0, 1, 16, 64]))
 def test_what_a_roadmap_does_not_know_is_searched_for(n_draws: int):
     check_answers(poor_roadmap(SPACE, n_draws), BLOCKED, seed=6)
 
@@ -178,7 +201,9 @@ def test_the_samples_of_an_answer_are_its_path():
     np.testing.assert_array_equal(result.parents, np.arange(-1, len(result.path) - 1))
 
 
-@pytest.mark.parametrize('blocked', [maps.ONE_CELL, np.ones((4, 6), bool), np.zeros((9, 2), bool)])
+@pytest.mark.parametrize(
+    'blocked', [sweep(maps.ONE_CELL), np.ones((4, 6), bool), np.zeros((9, 2), bool)]
+)
 def test_a_space_without_corners_has_a_roadmap_without_nodes(blocked: Bools):
     space = GridSpace.from_blocked(blocked)
     roadmap = sampled(space, 0)
@@ -193,6 +218,7 @@ def test_a_space_without_corners_has_a_roadmap_without_nodes(blocked: Bools):
 # -- pure ----------------------------------------------------------------------------------------
 
 
+@pytest.mark.sweep
 def test_answers_are_the_same_again_in_any_order_and_from_any_thread():
     pairs = requests(SPACE, 40, seed=8)
 
@@ -211,9 +237,9 @@ def test_equal_seeds_give_equal_roadmaps():
     with ThreadPoolExecutor(2) as pool:
         first, second = pool.map(lambda _: sampled(SPACE, 3), range(2))
     np.testing.assert_array_equal(first.nodes, second.nodes)
-    changed = GridSpace.from_blocked(maps.rooms(60, 80, 10, seed=5), RESOLUTION, ORIGIN)
+    changed = GridSpace.from_blocked(maps.rooms(*SHAPE, seed=5), RESOLUTION, ORIGIN)
     for a, b in ((first, second), (first.update(changed), second.update(changed))):
-        for start, goal in requests(changed, 20, seed=1):
+        for start, goal in requests(changed, N_REQUESTS // 3, seed=1):
             answers = [ask(x, start, goal) for x in (a, b)]
             assert same(*answers)
     assert not np.array_equal(sampled(SPACE, 4).nodes, first.nodes)
@@ -227,25 +253,26 @@ def changed_maps() -> dict[str, Bools]:
     closed, opened, pillar = BLOCKED.copy(), BLOCKED.copy(), BLOCKED.copy()
     doors = np.flatnonzero(~BLOCKED[:, 10])
     closed[doors[len(doors) // 2], 10] = True
-    opened[20, 30:60] = False
-    pillar[33:37, 44:48] = True
+    opened[20, 10:30] = False
+    pillar[23:27, 24:28] = True
     return {
         'closed': closed,
         'opened': opened,
         'pillar': pillar,
         'all': (closed | pillar) & opened,
-        'other': maps.rooms(60, 80, 10, seed=7),
+        'other': maps.rooms(*SHAPE, seed=7),
     }
 
 
+@pytest.mark.sweep
 @pytest.mark.parametrize('change', changed_maps())
 def test_after_a_change_it_is_as_valid_as_a_new_one(change: str):
     blocked = changed_maps()[change]
     space = GridSpace.from_blocked(blocked, RESOLUTION, ORIGIN)
     repaired, new = shared().update(space), sampled(space, 9)
-    check_answers(repaired, blocked, seed=3, n_requests=100)
+    check_answers(repaired, blocked, seed=3, n_requests=2 * N_REQUESTS)
     ratios = []
-    for start, goal in requests(space, 100, seed=4):
+    for start, goal in requests(space, 2 * N_REQUESTS, seed=4):
         if space.connected(start, goal):
             lengths = [ask(x, start, goal).length for x in (repaired, new)]
             ratios.append(lengths[0] / lengths[1])
@@ -254,11 +281,11 @@ def test_after_a_change_it_is_as_valid_as_a_new_one(change: str):
 
 
 def test_a_change_leaves_the_roadmap_before_it_as_it_was():
-    before = [ask(shared(), *pair) for pair in requests(SPACE, 20, 1)]
+    before = [ask(shared(), *pair) for pair in requests(SPACE, N_REQUESTS // 3, 1)]
     nodes = shared().nodes.copy()
     shared().update(GridSpace.from_blocked(changed_maps()['all'], RESOLUTION, ORIGIN))
     shared().grow()
-    after = [ask(shared(), *pair) for pair in requests(SPACE, 20, 1)]
+    after = [ask(shared(), *pair) for pair in requests(SPACE, N_REQUESTS // 3, 1)]
     np.testing.assert_array_equal(shared().nodes, nodes)
     assert all(map(same, before, after))
 
@@ -266,7 +293,8 @@ def test_a_change_leaves_the_roadmap_before_it_as_it_was():
 def test_there_and_back_again():
     blocked = changed_maps()['all']
     there = shared().update(GridSpace.from_blocked(blocked, RESOLUTION, ORIGIN))
-    check_answers(there.update(SPACE), BLOCKED, seed=5, n_requests=100)
+    check_answers(there, blocked, seed=3)
+    check_answers(there.update(SPACE), BLOCKED, seed=5, n_requests=2 * N_REQUESTS)
 
 
 def test_free_points_come_and_go():
@@ -288,9 +316,9 @@ def test_the_roadmap_of_a_map_elsewhere_is_not_repaired(
 
 
 def test_a_grown_roadmap_has_shorter_paths():
-    blocked = maps.speckle(80, 100, 0.05, seed=1)
+    blocked = maps.speckle(*SHAPE[:2], 0.05, seed=1)
     space = GridSpace.from_blocked(blocked, RESOLUTION)
-    small = poor_roadmap(space, 128)
+    small = poor_roadmap(space, N_DRAWS // 32)
     grown = small.grow()
     assert len(grown.nodes) > len(small.nodes)
     check_answers(grown, blocked, seed=9)

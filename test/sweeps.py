@@ -1,0 +1,16 @@
+"""Parameters of tests that belong to the sweeps: further cases of what others test already."""
+
+from collections.abc import Collection, Iterable
+from typing import Any
+
+import pytest
+
+
+def sweep(*values: Any, name: str | None = None) -> Any:
+    """Return a parameter that belongs to the sweeps."""
+    return pytest.param(*values, marks=pytest.mark.sweep, id=name)
+
+
+def sweep_but(kept: Collection[Any], values: Iterable[Any]) -> list[Any]:
+    """Return parameters of which all but ``kept`` belong to the sweeps."""
+    return [value if value in kept else sweep(value) for value in values]
