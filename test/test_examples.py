@@ -5,6 +5,7 @@ from pathlib import Path
 import re
 import runpy
 import sys
+from test.sweeps import sweep
 
 from hnr_planner.core.kernels import modes
 import matplotlib
@@ -16,7 +17,7 @@ matplotlib.use('agg')
 ROOT = Path(__file__).resolve().parents[1]
 #: The client of the node is run with a node, in test/ros.
 EXAMPLES = sorted(set(ROOT.glob('examples/*.py')) - {ROOT / 'examples' / 'ask_the_node.py'})
-#: What an example prints, where it prints something that could be wrong.
+#: What an example prints, where it prints something that could be wrong; the others are sweeps.
 PRINTS = {
     'alternatives': r'4 of 4 paths',
     'arm_by_an_oracle': r'SOLVED',
@@ -49,7 +50,11 @@ def interpreted() -> Iterator[None]:
 
 
 @pytest.mark.usefixtures('interpreted')
-@pytest.mark.parametrize('file', EXAMPLES, ids=lambda file: file.stem)
+@pytest.mark.parametrize(
+    'file',
+    [file if file.stem in PRINTS else sweep(file) for file in EXAMPLES],
+    ids=lambda file: file.stem,
+)
 def test_an_example_runs_and_draws_one_picture(
     file: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -10,6 +10,7 @@ import re
 import shutil
 import subprocess
 import sys
+from test.sweeps import sweep
 from typing import Any
 import xml.etree.ElementTree as ElementTree
 
@@ -290,7 +291,7 @@ def test_layers_below_ros_import_no_ros(name: str) -> None:
         assert not [library for library in libraries(source(module)) if is_ros(library)], module
 
 
-@pytest.mark.parametrize('layer_name', ['core', 'maps', 'server'])
+@pytest.mark.parametrize('layer_name', [sweep('core'), sweep('maps'), 'server'])
 def test_it_runs_where_there_is_no_ros(layer_name: str) -> None:
     program = f"""
 import importlib, sys
@@ -354,7 +355,7 @@ def test_colcon_takes_it_for_a_ros_package(colcon: list[str], tmp_path: Path) ->
     assert done.stdout.split() == ['hnr_planner', 'src/hnr_planner', '(ros.ament_python)']
 
 
-@pytest.mark.parametrize('how', [[], ['--symlink-install']], ids=['copied', 'linked'])
+@pytest.mark.parametrize('how', [[], sweep(['--symlink-install'])], ids=['copied', 'linked'])
 def test_colcon_installs_all_of_it(
     colcon: list[str], how: list[str], tmp_path: Path, distribution: Any
 ) -> None:

@@ -4,6 +4,7 @@ import math
 from pathlib import Path
 from test.cli.conftest import at
 from test.cli.pictures import check_picture
+from test.sweeps import sweep
 
 from hnr_planner import drawing
 from hnr_planner.maps import OccupancyMap
@@ -113,7 +114,7 @@ def test_a_map_of_which_nothing_is_known_can_be_drawn(tmp_path: Path) -> None:
     check_picture(tmp_path / 'a.png')
 
 
-@pytest.mark.parametrize('shape', [(4100, 30), (30, 8003), (4001, 4003)])
+@pytest.mark.parametrize('shape', [(4100, 30), (30, 8003), sweep((4001, 4003))])
 def test_cells_of_a_large_map_are_drawn_where_they_are(shape: tuple[int, int]) -> None:
     data = np.zeros(shape, dtype=np.int8)
     rows, cols = shape

@@ -17,6 +17,8 @@ from matplotlib.figure import Figure
 import numpy as np
 import pytest
 
+pytestmark = pytest.mark.interpreted
+
 Run = Callable[..., Ran]
 VERTICES = [(0.3, 0.2), (0.3, -0.2), (-0.2, -0.2), (-0.2, 0.2)]
 FOOTPRINT = ('--footprint', str([list(vertex) for vertex in VERTICES]))

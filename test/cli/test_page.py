@@ -319,6 +319,7 @@ def test_a_search_without_a_path_is_shown_too(
     assert page.errors() == []
 
 
+@pytest.mark.interpreted
 def test_a_robot_with_a_footprint_moves_along_its_path(
     browser: Any, run: Callable[..., Ran], rooms: OccupancyMap, rooms_file: Path, tmp_path: Path
 ) -> None:

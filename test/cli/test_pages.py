@@ -7,6 +7,7 @@ import subprocess
 import sys
 from test.cli.conftest import ROOT
 from test.cli.pictures import check_picture
+from test.sweeps import sweep
 
 from hnr_planner.core.kernels import modes
 from hnr_planner.core.kernels.cache_folder import cache_folder, cache_home
@@ -54,9 +55,7 @@ def run(command: list[str], folder: Path, mode: modes.Mode | None = None) -> str
 
 # What an experiment is made of, test/experiments/ runs, and how the command shows one,
 # test_experiment.py.
-@pytest.mark.parametrize(
-    'page', ['map_files', 'sampling', pytest.param('measured', marks=pytest.mark.sweep)]
-)
+@pytest.mark.parametrize('page', ['map_files', sweep('sampling'), sweep('measured')])
 def test_commands_run_and_write_their_files(page: str, clone: Path) -> None:
     (block,) = blocks('bash', page)
     out = run(['bash', '-ec', block], clone)
@@ -80,7 +79,7 @@ def test_commands_run_and_write_their_files(page: str, clone: Path) -> None:
         pytest.param(
             'sampling',
             '(4, 1000, 6)\nconverged: R-hat at most 1.0',
-            marks=pytest.mark.interpreted,
+            marks=[pytest.mark.interpreted, pytest.mark.sweep],
         ),
     ],
 )

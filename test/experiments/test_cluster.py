@@ -94,6 +94,7 @@ def test_command_writes_the_files_of_a_serial_run(cluster: str, tmp_path: Path) 
     assert written(tmp_path / 'cluster') == written(tmp_path / 'serial')
 
 
+@pytest.mark.sweep
 def test_interrupted_run_is_resumed(cluster: str, tmp_path: Path) -> None:
     gate, folder, serial = tmp_path / 'gate', tmp_path / 'cluster', tmp_path / 'serial'
     program = TO_BE_INTERRUPTED.format(address=cluster, gate=str(gate), folder=str(folder))
@@ -116,6 +117,7 @@ def test_interrupted_run_is_resumed(cluster: str, tmp_path: Path) -> None:
     assert rows.read_text().startswith(before)
 
 
+@pytest.mark.sweep
 @pytest.mark.interpreted
 def test_example_of_the_page_draws_the_same_in_a_set_of_a_lambda(cluster: str) -> None:
     page = (ROOT / 'docs' / 'parallel.md').read_text()

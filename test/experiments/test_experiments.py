@@ -3,6 +3,7 @@
 from dataclasses import replace
 from pathlib import Path
 import re
+from test.sweeps import sweep
 
 from hnr_planner.core import GridSpace
 from hnr_planner.experiments import clouds, EXPERIMENTS, load, NAMES, safety
@@ -15,13 +16,14 @@ import numpy as np
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
-#: Experiments whose many walks are compiled for them alone; test_mixing.py has their parts.
-LONG = ('mixing',)
+#: Experiments that compile for themselves alone, or take seconds; what they are made of is tested
+#: below, in test_mixing.py and in test/core/.
+LONG = ('clouds', 'mixing', 'restarts', 'safety', 'theory')
 
 
 @pytest.mark.parametrize(
     'name',
-    [pytest.param(name, marks=[pytest.mark.sweep] * (name in LONG)) for name in NAMES],
+    [sweep(name) if name in LONG else name for name in NAMES],
 )
 def test_every_experiment_runs_and_repeats_itself(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch

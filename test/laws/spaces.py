@@ -195,3 +195,15 @@ LONG: dict[str, Callable[[], object]] = {
     'grid, surveyed': _surveyed,
 }
 SPACES = QUICK | LONG
+#: Spaces in which the laws are sweeps: others hold their kinds and what is difficult about them.
+FURTHER = (
+    'ball',
+    'difference',
+    'grid and box',
+    'grid in metres',
+    'grid without obstacles',
+    'mapped',
+    'polygon',
+    'sheared box',
+    'union of a kind',
+)

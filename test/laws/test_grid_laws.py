@@ -3,6 +3,7 @@
 from test.brute_force import blocked_cells, chord_by_search, path_collisions
 from test.laws import maps
 from test.laws.grids import EXACT_FRAMES, FRAMES, GRIDS, in_map_frame
+from test.sweeps import sweep_but
 
 from hnr_planner.core import GridSpace
 from hypothesis import given, settings
@@ -165,7 +166,7 @@ def test_motion_is_valid_exactly_when_no_closed_cell_touches_it(blocked, start, 
         assert path_collisions([start, end], blocked, 1.0) == []
 
 
-@pytest.mark.parametrize('frame', FRAMES)
+@pytest.mark.parametrize('frame', sweep_but(['cells', 'turned'], FRAMES))
 def test_chord_is_the_exact_one_for_any_floats(frame):
     """1000 random lines on random maps; a line this near to a corner by chance: p < 1e-6."""
     rng = np.random.default_rng(7)

@@ -9,6 +9,7 @@ first crossing at which it touches a blocked cell.
 import os
 from pathlib import Path
 from test.laws import maps
+from test.sweeps import sweep
 
 import cv2
 from hnr_planner.core import GridSpace
@@ -176,6 +177,6 @@ def test_skipping_changes_no_bit(kind, family):
 
 
 @FAMILIES
-@pytest.mark.parametrize('file', real_maps(), ids=lambda file: file.name)
+@pytest.mark.parametrize('file', map(sweep, real_maps()), ids=lambda file: file.name)
 def test_skipping_changes_no_bit_on_real_maps(file, family):
     assert_skipping_changes_nothing(read_real_map(file), family)

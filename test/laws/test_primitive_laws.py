@@ -19,9 +19,8 @@ from hnr_planner.core.spaces.primitives import (
 import numpy as np
 import pytest
 
-N = 300
-#: Random points, and points along a line; interpreted, most of the time is theirs.
-SCATTERED, ALONG = (6000, 400) if 'HNR_COMPILE_ALL' in os.environ else (1200, 100)
+#: Lines, random points, and points along a line; interpreted, most of the time is theirs.
+N, SCATTERED, ALONG = (300, 6000, 400) if 'HNR_COMPILE_ALL' in os.environ else (150, 1200, 100)
 
 
 class Line(NamedTuple):

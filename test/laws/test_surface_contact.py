@@ -1,6 +1,7 @@
 """First exits of curves from spaces bounded by planes and spheres, against dense tests."""
 
 import math
+from test.sweeps import sweep
 from typing import Any
 
 from hnr_planner.core import (
@@ -64,10 +65,16 @@ def points_on(curve: Any, t: Any) -> Any:
 
 
 CASES = [(name, space) for name, space in [*PLANE.items(), *SOLID.items()]]
+#: Of every kind of surface, and of pieces and holes.
+KEPT = ('polygon', 'holes', 'box and ball', 'cube with a hole')
 
 
 @pytest.mark.interpreted
-@pytest.mark.parametrize(('name', 'space'), CASES, ids=[name for name, _ in CASES])
+@pytest.mark.parametrize(
+    ('name', 'space'),
+    [case if case[0] in KEPT else sweep(*case) for case in CASES],
+    ids=[name for name, _ in CASES],
+)
 def test_contact_lies_between_the_last_free_look_and_the_next(name: str, space: Space) -> None:
     rng = np.random.default_rng(7)
     lower, upper = space.bounds

@@ -1,6 +1,7 @@
 """The generated office floor: every room can be entered, and the sample map is what it draws."""
 
 from pathlib import Path
+from test.sweeps import sweep
 
 import cv2
 from hnr_planner.maps import building, load_map, OccupancyMap
@@ -14,7 +15,7 @@ OFFICE = Path(__file__).parents[2] / 'config' / 'maps' / 'office.yaml'
 ROBOT = 0.22
 
 
-@pytest.fixture(scope='module', params=[OFFICE_SEED, 0, pytest.param(1, marks=pytest.mark.sweep)])
+@pytest.fixture(scope='module', params=[OFFICE_SEED, sweep(0), sweep(1)])
 def seed(request: pytest.FixtureRequest) -> int:
     return request.param
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from pathlib import Path
+from test.sweeps import sweep
 from typing import Any
 
 from hnr_planner.maps.pixels import Pixels, read_cells
@@ -117,7 +118,7 @@ def test_grey_with_a_transparent_value(tmp_path: Path) -> None:
     assert np.array_equal(read(tmp_path, 'a.png', image, transparency=205), expected)
 
 
-@pytest.mark.parametrize('mode', ['1', 'L', 'P', 'LA', 'RGB', 'RGBA', 'I;16'])
+@pytest.mark.parametrize('mode', ['1', 'L', 'P', sweep('LA'), sweep('RGB'), 'RGBA', 'I;16'])
 def test_an_image_of_many_strips_is_read_like_its_rows(tmp_path: Path, mode: str) -> None:
     noise = np.random.default_rng(1).integers(0, 256, (1700, 1300)).astype(np.uint8)
     deep = noise.astype(np.uint16) * 257

@@ -76,6 +76,7 @@ def lines(planner: NodeProcess, words: str) -> list[str]:
     return [line for line in planner.log.splitlines() if words in line]
 
 
+@pytest.mark.sweep
 def test_node_without_machine_code_serves_before_it_is_compiled(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:

@@ -25,6 +25,8 @@ from hnr_planner.server.validity.path_validity import judge_path
 import numpy as np
 import pytest
 
+pytestmark = pytest.mark.interpreted
+
 #: A robot of .5 m by .4 m that turns about a point behind its middle.
 VERTICES = ((0.3, 0.2), (0.3, -0.2), (-0.2, -0.2), (-0.2, 0.2))
 FOOTPRINT = str([list(vertex) for vertex in VERTICES])

@@ -1,5 +1,7 @@
 """Annealing finds minima of functions on sets that are not convex."""
 
+from test.sweeps import sweep
+
 from hnr_planner.core import anneal, BallSpace, BoxSpace, DifferenceSpace, RequestError
 from numba import njit
 import numpy as np
@@ -15,7 +17,7 @@ def _wavy(x):
     return bowl - np.cos(4.0 * (x[0] + 1.5)) - np.cos(4.0 * (x[1] + 1.5))
 
 
-@pytest.mark.parametrize('objective', [_wavy, _wavy.py_func], ids=['compiled', 'Python'])
+@pytest.mark.parametrize('objective', [sweep(_wavy), _wavy.py_func], ids=['compiled', 'Python'])
 def test_the_lowest_of_many_minima_is_found(objective):
     best = anneal(SPACE, objective, (1.9, 1.9), n_steps=6000, seed=1)
     np.testing.assert_allclose(best.point, (-1.5, -1.5), atol=0.01)
@@ -26,8 +28,14 @@ def test_the_lowest_of_many_minima_is_found(objective):
 
 def test_a_minimum_on_the_boundary_of_a_hole_is_approached():
     """The nearest free point to the middle of the hole is on its rim."""
-    distance = njit(lambda x: np.hypot(x[0] - 1.0, x[1] - 1.05))
-    best = anneal(SPACE, distance, (-1.0, 0.0), n_steps=6000, n_chains=2, seed=2)
+    best = anneal(
+        SPACE,
+        lambda x: np.hypot(x[0] - 1.0, x[1] - 1.05),
+        (-1.0, 0.0),
+        n_steps=6000,
+        n_chains=2,
+        seed=2,
+    )
     assert SPACE.contains(best.point)
     assert 0.55 < best.value < 0.551
 

@@ -3,6 +3,7 @@
 from pathlib import Path
 import pickle
 from test.laws import maps
+from test.sweeps import sweep
 
 from hnr_planner.core import (
     BallSpace,
@@ -58,7 +59,7 @@ EACH_SPACE = pytest.mark.parametrize(
     ],
 )
 EACH_POLYTOPE = pytest.mark.parametrize('name', ['simplex', 'full polytope'])
-EACH_WALK = pytest.mark.parametrize('walk', [*WALKS, BallWalk(0.3, segment_visible=False)])
+EACH_WALK = pytest.mark.parametrize('walk', [*WALKS, sweep(BallWalk(0.3, segment_visible=False))])
 
 
 def assert_same(some: Chains, others: Chains) -> None:
@@ -84,6 +85,7 @@ def test_two_halves_are_one_long_run_to_the_last_bit(space, start, walk, tmp_pat
     assert 500 * 3 % REFRESH != 0 < REFRESH < 2700
 
 
+@pytest.mark.sweep
 @EACH_SPACE
 @EACH_WALK
 def test_compiled_and_interpreted_chains_are_the_same(space, start, walk):

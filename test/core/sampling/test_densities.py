@@ -8,6 +8,7 @@ fail. Walks for other densities, which are the mutants, must fail the same test.
 
 import pickle
 from test.core.sampling.chain_steps import step_of
+from test.sweeps import sweep
 
 from hnr_planner.core import (
     BallSpace,
@@ -76,9 +77,9 @@ def normal_points_in_cone(rng: np.random.Generator) -> np.ndarray:
         (Gaussian((0.0, 0.0), 0.9 * np.eye(2)), False),
         (Gaussian((0.1, 0.0), np.eye(2)), False),
         (_standard_normal, True),
-        pytest.param(_narrower, False, marks=pytest.mark.sweep),
-        (Exponential((1.0, 0.0)), False),
-        (None, False),
+        sweep(_narrower, False),
+        sweep(Exponential((1.0, 0.0)), False),
+        sweep(None, False),
     ],
 )
 def test_a_normal_density_in_a_cone_is_kept(density, is_right):
@@ -88,6 +89,7 @@ def test_a_normal_density_in_a_cone_is_kept(density, is_right):
     assert (min(p_values_in_cone(moved)) > ALPHA) == is_right
 
 
+@pytest.mark.sweep
 def test_a_normal_density_is_kept_in_rounded_coordinates():
     space, rng = round_space(cone(), seed=1), np.random.default_rng(2)
     walk = HitAndRunWalk(Gaussian((0.0, 0.0), np.eye(2)))
@@ -102,7 +104,7 @@ def box_without_balls() -> DifferenceSpace:
 
 @pytest.mark.parametrize(
     ('density', 'is_right'),
-    [(_standard_normal, True), pytest.param(_narrower, False, marks=pytest.mark.sweep)],
+    [(_standard_normal, True), sweep(_narrower, False)],
 )
 def test_a_normal_density_in_a_box_without_balls_is_kept(density, is_right):
     """Marginals against as many exact points: normal ones that are free."""

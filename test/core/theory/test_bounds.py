@@ -2,6 +2,7 @@
 
 import math
 from test.core.theory.sets import DISC
+from test.sweeps import sweep
 
 from hnr_planner.core import BallSpace, BoxSpace, RequestError, ShearedSpace
 from hnr_planner.core.theory import (
@@ -91,7 +92,7 @@ def test_the_bounds_hold_on_a_set_that_is_not_convex():
     assert mended_conductance(image) < corrected_conductance(image) < 1e-13
 
 
-@pytest.mark.parametrize('apart', [0.02, 0.08])
+@pytest.mark.parametrize('apart', [sweep(0.02), 0.08])
 def test_lemma_11_on_a_set_that_is_not_convex(apart):
     """Neighbouring points of the banana; and two in its arms, whose views differ."""
     u = BANANA.image((-0.3, -0.1))

@@ -43,6 +43,7 @@ def test_round_the_corner_of_an_ell():
     assert chain_distance(L_SET, (0.5, 1.5), (1.5, 0.5), 1).upper == math.inf
 
 
+@pytest.mark.sweep
 def test_a_polygon_is_the_same_as_its_grid():
     """The same L as a polygon, whose rings run either way."""
     ring = [(0, 0), (0, 2), (1, 2), (1, 1), (2, 1), (2, 0)]

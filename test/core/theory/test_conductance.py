@@ -2,6 +2,7 @@
 
 import math
 from test.core.theory.sets import BALL, CUBE, DISC, L_SET, scattered, two_rooms, U_SET, walked
+from test.sweeps import sweep
 
 from hnr_planner.core import BoxSpace, RequestError
 from hnr_planner.core.theory import (
@@ -48,7 +49,7 @@ def test_flow_between_cells_is_the_mean_of_the_steps():
         assert flow.kernel[k, into].sum() == pytest.approx(mean, rel=0.02)
 
 
-@pytest.mark.parametrize('door', [0.05, 0.2])
+@pytest.mark.parametrize('door', [sweep(0.05), 0.2])
 def test_two_rooms_with_a_door(door):
     """The cut, its closed form, the bracket of Cheeger, and the relaxation time."""
     flow = cell_flow(two_rooms(door), (10, 20), N_LINES)
@@ -70,7 +71,7 @@ def test_finer_cells_forget_less():
     assert times[-1] / times[0] > 1.05
 
 
-@pytest.mark.parametrize('n_steps', [5, 20])
+@pytest.mark.parametrize('n_steps', [5, sweep(20)])
 def test_walks_change_sides_as_the_flow_says(n_steps):
     """
     Correlation of the sides that a walk begins and ends on, with a door of .2.
@@ -92,11 +93,10 @@ def test_walks_change_sides_as_the_flow_says(n_steps):
 @pytest.mark.parametrize(
     ('space', 'side'),
     [
-        (two_rooms(0.2), BoxSpace((-1, -1), (1, 2))),
-        (BALL, BoxSpace((0, -2, -2), (2, 2, 2))),
-        (CUBE, BoxSpace((0.3, 0, 0), (2, 2, 2))),
+        sweep(two_rooms(0.2), BoxSpace((-1, -1), (1, 2)), name='rooms'),
+        sweep(BALL, BoxSpace((0, -2, -2), (2, 2, 2)), name='ball'),
+        pytest.param(CUBE, BoxSpace((0.3, 0, 0), (2, 2, 2)), id='cube'),
     ],
-    ids=['rooms', 'ball', 'cube'],
 )
 def test_random_lines_give_the_cut_in_any_dimension(space, side):
     """100 000 lines against 200 000 steps from the smaller side, at 6.5 standard errors."""

@@ -2,13 +2,14 @@
 
 from test.core.theory.sets import SQUARE
 from test.core.theory.stars import DIVIDED, divided, strip
+from test.sweeps import sweep_but
 
 from hnr_planner.core import RequestError
 from hnr_planner.core.theory import isoperimetry
 import pytest
 
 
-@pytest.mark.parametrize('name', DIVIDED)
+@pytest.mark.parametrize('name', sweep_but(['disc, ring of .2', 'square, corner'], DIVIDED))
 def test_the_inequality_holds(name):
     """Errors of the drawn points are a few percent; the least ratio is 1.3."""
     assert divided(name).ratio > 1.1

@@ -14,6 +14,7 @@ from test.core.theory.paths import (
 from test.core.theory.sets import DISC, L_SET, SQUARE, two_rooms, U_SET
 from test.core.theory.stars import DIVIDED, divided, SMOOTH, smooth, walked
 from test.laws.maps import SPIRAL, TWO_ROOMS
+from test.sweeps import sweep
 
 from hnr_planner.core import BallSpace, BoxSpace, GridSpace, ShearedSpace
 from hnr_planner.core.theory import (
@@ -168,7 +169,8 @@ def in_the_paper():
 
 
 @pytest.mark.parametrize(
-    'table', [quantities, conductances, bounds, assumptions, stars, paths, in_the_paper]
+    'table',
+    [quantities, bounds, assumptions, stars, *map(sweep, (conductances, paths, in_the_paper))],
 )
 def test_the_page_prints_what_the_functions_give(table):
     printed = rows()

@@ -1,6 +1,7 @@
 """A double integrator in three dimensions, among spheres and boxes."""
 
 import math
+from test.sweeps import sweep
 
 from hnr_planner.core import BallSpace, BoxSpace, DifferenceSpace, plan_trajectory, PlannerStatus
 from hnr_planner.core.systems import DoubleIntegrator
@@ -24,9 +25,9 @@ START, GOAL = np.array([0.5, 0.5, 0.5, 0.0, 0.0, 0.0]), np.array([3.5, 3.5, 0.5]
     ('algorithm', 'speed'),
     [
         ('kinodynamic_connect', 0.8),
-        ('kinodynamic_rrt', 0.0),
-        pytest.param('kinodynamic_connect', 0.0, marks=pytest.mark.sweep),
-        pytest.param('kinodynamic_rrt', 0.8, marks=pytest.mark.sweep),
+        sweep('kinodynamic_rrt', 0.0),
+        sweep('kinodynamic_connect', 0.0),
+        sweep('kinodynamic_rrt', 0.8),
     ],
 )
 def test_a_trajectory_among_spheres_is_free_and_keeps_the_limits(

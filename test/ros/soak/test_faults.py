@@ -102,6 +102,7 @@ def test_node_that_is_killed_leaves_clients_that_can_ask_the_next_one(
     )
 
 
+@pytest.mark.sweep
 def test_clients_that_vanish_leave_the_node_to_others(tmp_path: Path, tell: Tell) -> None:
     count = 0
     with (

@@ -87,6 +87,7 @@ def test_requests_are_answered_on_the_own_map(sides: tuple[Side, Side], tell: Te
     tell(f'2 x {EFFORT.requests} requests')
 
 
+@pytest.mark.sweep
 def test_cancellation_is_for_the_own_searches(sides: tuple[Side, Side]) -> None:
     left, right = sides
     for own in sides:

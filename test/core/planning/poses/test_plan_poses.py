@@ -10,6 +10,8 @@ from hnr_planner.core.planning.poses.search import N_ADDED
 import numpy as np
 import pytest
 
+pytestmark = pytest.mark.interpreted
+
 ALGORITHMS = ('auto', 'hit_and_run', 'rrt', 'hit_and_run_connect', 'rrt_connect')
 START, GOAL = (1.5, 1.2, 0.0), (6.5, 2.2, 2.0)
 PATIENT = {'time_limit': math.inf, 'max_iterations': 20_000}
@@ -93,6 +95,7 @@ def price(space, result):
     return np.abs(driven).sum() - driven[driven < 0.0].sum() + radius * n_changes
 
 
+@pytest.mark.sweep
 def test_further_searches_never_make_a_path_dearer():
     space, saved = hall(**DRIVES['car']), []
     for goal in (GOAL, (7.0, 1.0, 2.0), (7.0, 5.0, -1.6), (5.0, 1.0, 1.5)):
@@ -141,6 +144,7 @@ def test_a_goal_region_is_reached_within_its_tolerances():
     assert turned.status is PlannerStatus.SOLVED
 
 
+@pytest.mark.sweep
 def test_a_car_parks_in_a_slot_little_longer_than_itself():
     # The robot is .9 m long, and turns out of the slot of 1.3 m by strokes back and forth.
     blocked = np.zeros((60, 120), dtype=bool)
