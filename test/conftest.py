@@ -67,7 +67,12 @@ TOGETHER = ('test/laws/', 'test/core/theory/')
 APART = ('test/core/kernels/test_tiers.py',)
 #: New objects after which Python looks for garbage: the compiler makes many, and few are garbage.
 GARBAGE_EVERY = 50_000
-WARM_UP = 'from hnr_planner.core import warm_up; warm_up()'
+WARM_UP = f"""
+import gc
+from hnr_planner.core import warm_up
+gc.set_threshold({GARBAGE_EVERY})
+warm_up()
+"""
 
 
 def pytest_sessionstart(session: pytest.Session) -> None:

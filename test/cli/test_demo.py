@@ -123,7 +123,7 @@ def test_demo_on_a_real_map(start, file: Path) -> None:
 @pytest.mark.parametrize(
     ('moment', 'number'),
     [
-        ('robot radius', signal.SIGINT),
+        sweep('robot radius', signal.SIGINT),
         sweep('starting the map source', signal.SIGHUP),
         ('preparing', signal.SIGTERM),
     ],

@@ -55,7 +55,7 @@ def run(command: list[str], folder: Path, mode: modes.Mode | None = None) -> str
 
 # What an experiment is made of, test/experiments/ runs, and how the command shows one,
 # test_experiment.py.
-@pytest.mark.parametrize('page', ['map_files', sweep('sampling'), sweep('measured')])
+@pytest.mark.parametrize('page', [sweep('map_files'), 'sampling', sweep('measured')])
 def test_commands_run_and_write_their_files(page: str, clone: Path) -> None:
     (block,) = blocks('bash', page)
     out = run(['bash', '-ec', block], clone)
@@ -87,16 +87,22 @@ def test_first_python_of_a_page_runs(page: str, begins: str, clone: Path) -> Non
     assert run([sys.executable, '-c', blocks('python', page)[0]], clone).startswith(begins)
 
 
-def test_other_python_runs_and_prints_what_the_pages_say(clone: Path) -> None:
-    """Interpreted: each is of another kind of space, and takes a second at most."""
-    in_threads, on_dask, on_a_cluster = blocks('python', 'parallel')
-    (wall,) = blocks('python', 'failures')
-    program = '\n'.join([in_threads, on_dask, on_a_cluster, wall, blocks('python', 'sampling')[1]])
+# Interpreted: each is of another kind of space, and takes a second at most.
+@pytest.mark.sweep  # test_cluster.py has a cluster
+def test_python_of_many_jobs_prints_what_the_page_says(clone: Path) -> None:
+    program = '\n'.join(blocks('python', 'parallel'))
     out = run([sys.executable, '-c', program], clone, modes.Mode.INTERPRETED)
-    threads, dask, cluster, failure, moves = out.splitlines()
+    threads, dask, cluster = out.splitlines()
     assert threads == "['SOLVED', 'SOLVED', 'SOLVED']"
     assert dask == '(3, 5, 2)'
     assert cluster.startswith('(6, 500, 4) converged')
+
+
+def test_other_python_runs_and_prints_what_the_pages_say(clone: Path) -> None:
+    (wall,) = blocks('python', 'failures')
+    program = '\n'.join([wall, blocks('python', 'sampling')[1]])
+    out = run([sys.executable, '-c', program], clone, modes.Mode.INTERPRETED)
+    failure, moves = out.splitlines()
     assert failure.startswith('UNREACHABLE ')
     assert moves.startswith('[')
 

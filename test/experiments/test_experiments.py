@@ -96,6 +96,7 @@ def with_a_robot_map(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv(safety.MAPS_VARIABLE, str(tmp_path))
 
 
+@pytest.mark.sweep
 @pytest.mark.usefixtures('with_a_robot_map')
 def test_robot_maps_take_part_by_name_and_are_told_apart(tmp_path: Path) -> None:
     cases = [case for case in safety.cases() if case.place in ('floor 2', 'hall')]

@@ -6,6 +6,7 @@ from pathlib import Path
 import resource
 import subprocess
 import sys
+from test.sweeps import sweep
 import warnings
 
 from hnr_planner.maps import load_map, MapFileError
@@ -40,7 +41,7 @@ def address_space(n_bytes: float) -> Iterator[None]:
         resource.setrlimit(resource.RLIMIT_AS, before)
 
 
-@pytest.mark.parametrize(('magic', 'row_bytes'), [(b'P5', 13_500), (b'P4', 1_688)])
+@pytest.mark.parametrize(('magic', 'row_bytes'), [(b'P5', 13_500), sweep(b'P4', 1_688)])
 def test_a_map_beyond_the_limit_for_attacks_is_read(
     write_map: MapWriter, tmp_path: Path, magic: bytes, row_bytes: int
 ) -> None:

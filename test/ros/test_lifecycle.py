@@ -39,7 +39,13 @@ SHUTDOWN = {
     ACTIVE: Transition.TRANSITION_ACTIVE_SHUTDOWN,
 }
 
-#: Transitions that lead from each state to the first one.
+#: Transitions that lead to each state from the first one, and back.
+WAY_TO = {
+    UNCONFIGURED: (),
+    INACTIVE: (CONFIGURE,),
+    ACTIVE: (CONFIGURE, ACTIVATE),
+    FINALIZED: (SHUTDOWN[UNCONFIGURED],),
+}
 WAY_BACK = {ACTIVE: (DEACTIVATE, CLEANUP), INACTIVE: (CLEANUP,), UNCONFIGURED: ()}
 #: Draws that take hours, and so end by a cancellation; and the usual ones.
 ENDLESS = {'sample_count': 1_000_000, 'sample_thin': 100_000, 'time_limit': 60.0}

@@ -18,20 +18,14 @@ from test.ros.test_lifecycle import (
     DEACTIVATE,
     FINALIZED,
     INACTIVE,
-    SHUTDOWN,
     state,
     UNCONFIGURED,
+    WAY_TO,
 )
 
 import pytest
 from rclpy.duration import Duration
 
-#: Transitions that lead to a state from the first one.
-WAY_TO = {
-    UNCONFIGURED: (),
-    INACTIVE: (CONFIGURE,),
-    FINALIZED: (SHUTDOWN[UNCONFIGURED],),
-}
 NEEDS_BOND = pytest.mark.skipif(
     find_spec('bondpy') is None, reason='bondpy comes with a ROS from apt only'
 )

@@ -2,6 +2,7 @@
 
 import math
 from test.brute_force import path_collisions
+from test.sweeps import sweep
 from typing import Any
 
 from hnr_planner.core import BoxSpace, GridSpace, plan, PlannerStatus, PlanResult, RequestError
@@ -106,7 +107,7 @@ def crosses(space: GridSpace, way: np.ndarray) -> bool:
     return bool(path_collisions(way, space.occupied, space.resolution, space.origin))
 
 
-@pytest.mark.parametrize('origin', [(0.0, 0.0, 0.0), (-3.0, 2.0, 0.7)])
+@pytest.mark.parametrize('origin', [sweep((0.0, 0.0, 0.0)), (-3.0, 2.0, 0.7)])
 def test_the_escape_is_the_shortest_straight_one(origin: tuple[float, float, float]):
     rng, lengths, n_solved = np.random.default_rng(1), [], 0
     for _ in range(25):

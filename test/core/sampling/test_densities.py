@@ -198,17 +198,17 @@ def test_what_is_no_normal_distribution_is_refused(mean, covariance, reason):
 
 @pytest.mark.sweep
 @pytest.mark.parametrize(
-    'walk',
+    'build',
     [
-        HitAndRunWalk(Gaussian((0.3, 0.1), np.eye(2))),
-        HitAndRunWalk(Exponential((1.0, -0.5))),
-        HitAndRunWalk(_standard_normal),
-        CoordinateHitAndRunWalk(overrelaxed=True),
+        lambda: HitAndRunWalk(Gaussian((0.3, 0.1), np.eye(2))),
+        lambda: HitAndRunWalk(Exponential((1.0, -0.5))),
+        lambda: HitAndRunWalk(_standard_normal),
+        lambda: CoordinateHitAndRunWalk(overrelaxed=True),
     ],
     ids=['normal', 'exponential', 'slice', 'overrelaxed'],
 )
-def test_steps_are_the_same_interpreted_and_compiled(walk):
-    space = round_space(cone(), seed=1)
+def test_steps_are_the_same_interpreted_and_compiled(build):
+    space, walk = round_space(cone(), seed=1), build()
     draws = np.empty((2, 60, 2))
     for k, steps in enumerate((take_steps, interpreted(take_steps))):
         chain = new_chain(space, np.zeros(2), stream(7))
@@ -217,6 +217,7 @@ def test_steps_are_the_same_interpreted_and_compiled(walk):
     assert len(np.unique(draws[0], axis=0)) > 50
 
 
+@pytest.mark.sweep
 def test_a_diagnosis_counts_for_densities_too():
     """Chains in two modes of one density do not converge; chains in one mode do."""
     modes = njit(lambda x: -3e4 * min((x[0] - 1.0) ** 2, (x[0] + 1.0) ** 2) - 3e4 * x[1] ** 2)

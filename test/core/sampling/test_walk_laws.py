@@ -4,7 +4,6 @@ The walks of the package obey their law, on sets that are not convex, in 2, 3 an
 Every p-value is compared with ALPHA; the seeds are fixed.
 """
 
-from collections.abc import Collection
 from test.core.sampling.chain_steps import step_of
 from test.core.sampling.gate_sets import FURTHER, GateSet, marked, SETS
 from test.sampling_gate import (
@@ -29,30 +28,29 @@ from scipy import stats
 N_COORDINATE = 100_000
 N_CHAINS, N_STEPS = 2_000, 200
 
-#: Sets in which all but steps of Hit-and-Run belongs to the sweeps.
-ONE_STEP_ONLY = (*FURTHER, 'box without balls, 10-D')
+#: Sets in which all belongs to the sweeps: other files hold walks in spaces that are no grids.
+ALL_BUT_GRIDS = (*FURTHER, 'box without balls, 10-D')
 
 EACH_WALK = pytest.mark.parametrize('walk', WALKS)
 
 
-def one_step_in(further: Collection[str]) -> pytest.MarkDecorator:
-    """Return the mark of tests of one step from each point of each set."""
-    return pytest.mark.parametrize(
-        ('name', 'k'),
-        [
-            marked(name, k, further=further)
-            for name, gate_set in SETS.items()
-            for k in range(len(gate_set().points))
-        ],
-    )
+#: One step from each point of each set.
+EACH_STEP = pytest.mark.parametrize(
+    ('name', 'k'),
+    [
+        marked(name, k, further=ALL_BUT_GRIDS)
+        for name, gate_set in SETS.items()
+        for k in range(len(gate_set().points))
+    ],
+)
 
 
-@pytest.fixture(params=[marked(name, further=ONE_STEP_ONLY) for name in SETS])
+@pytest.fixture(params=[marked(name, further=ALL_BUT_GRIDS) for name in SETS])
 def gate_set(request) -> GateSet:
     return SETS[request.param]()
 
 
-@one_step_in(FURTHER)
+@EACH_STEP
 def test_one_step_of_hit_and_run(name, k):
     """T1 and T5: uniform over directions and over the chord, up to its very ends."""
     region, space, points = SETS[name]()
@@ -62,7 +60,7 @@ def test_one_step_of_hit_and_run(name, k):
     assert t5_ends(position) > ALPHA
 
 
-@one_step_in(ONE_STEP_ONLY)
+@EACH_STEP
 def test_one_step_of_coordinate_hit_and_run(name, k):
     """Any axis as often as any other, and uniform on the chord."""
     region, space, points = SETS[name]()

@@ -8,6 +8,7 @@ from itertools import combinations, pairwise
 import math
 from test.brute_force import path_collisions
 from test.laws import maps
+from test.sweeps import sweep
 from test.visibility_graph import convex_corners, is_visible, Point, SCALE
 import threading
 
@@ -295,7 +296,7 @@ def without_some_edges(space, budget):
 
 
 @pytest.mark.parametrize(
-    ('name', 'mutant'), [('begin', weighted), ('corner_graph', without_some_edges)]
+    ('name', 'mutant'), [sweep('begin', weighted), ('corner_graph', without_some_edges)]
 )
 def test_a_mutant_that_misses_classes_is_caught(
     name: str, mutant: Callable, monkeypatch: pytest.MonkeyPatch

@@ -8,6 +8,7 @@ import sys
 from test.brute_force import path_collisions
 from test.core.planning.searches import plan
 from test.laws import maps
+from test.sweeps import sweep
 
 from hnr_planner.core import (
     BallSpace,
@@ -194,17 +195,18 @@ SEEDS = range(8) if 'HNR_COMPILE_ALL' in os.environ else range(2)
 
 @pytest.mark.interpreted
 @pytest.mark.parametrize(
-    ('space', 'start', 'goal'),
+    ('build', 'dim', 'start', 'goal'),
     [
-        (wall(2), [0.1, 0.1], [0.9, 0.1]),
-        (wall(3), [0.1, 0.1, 0.1], [0.9, 0.1, 0.1]),
-        (wall(7), [0.1] * 7, [0.9] + [0.1] * 6),
-        (balls(3), [0.5] * 3, [9.5] * 3),
-        (balls(5), [0.5] * 5, [9.5] * 5),
+        (wall, 2, [0.1, 0.1], [0.9, 0.1]),
+        (wall, 3, [0.1, 0.1, 0.1], [0.9, 0.1, 0.1]),
+        sweep(wall, 7, [0.1] * 7, [0.9] + [0.1] * 6),
+        (balls, 3, [0.5] * 3, [9.5] * 3),
+        (balls, 5, [0.5] * 5, [9.5] * 5),
     ],
     ids=['wall 2', 'wall 3', 'wall 7', 'balls 3', 'balls 5'],
 )
-def test_no_path_is_left_raw_or_longer_than_by_plain_shortcuts(space: Space, start, goal):
+def test_no_path_is_left_raw_or_longer_than_by_plain_shortcuts(build, dim: int, start, goal):
+    space = build(dim)
     for seed in SEEDS:
         request = {'seed': seed, 'time_limit': math.inf}
         raw = plan(space, start, goal, simplify=False, **request).path

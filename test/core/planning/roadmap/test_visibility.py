@@ -13,8 +13,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 import numpy as np
 from numpy.typing import NDArray
+import pytest
 from scipy.sparse.csgraph import shortest_path
 from scipy.spatial.distance import cdist
+
+pytestmark = pytest.mark.interpreted
 
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]

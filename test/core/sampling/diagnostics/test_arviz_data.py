@@ -2,13 +2,14 @@
 
 from test.core.sampling.diagnostics.chains import autoregressive
 
-import arviz
 from hnr_planner.core import diagnose, RequestError, to_arviz
 import numpy as np
 import pytest
 
 
 def test_arviz_takes_the_draws_and_gives_our_figures():
+    import arviz  # which takes long, for this test alone
+
     draws = autoregressive(0.5, 4, 300, 2, seed=0)
     data = to_arviz(draws)
     assert data['x'].dims[:2] == ('chain', 'draw')
