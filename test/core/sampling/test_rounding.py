@@ -124,7 +124,7 @@ DEMONSTRATION = 'turned and scaled'
 @pytest.mark.parametrize(
     ('name', 'walk'),
     [
-        (name, walk) if DEMONSTRATION == name or walk == 'overrelaxed' else sweep(name, walk)
+        (name, walk) if name == DEMONSTRATION or walk == 'overrelaxed' else sweep(name, walk)
         for name in SETS
         for walk in RIGHT | WRONG
     ],
