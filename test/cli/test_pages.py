@@ -87,24 +87,22 @@ def test_first_python_of_a_page_runs(page: str, begins: str, clone: Path) -> Non
     assert run([sys.executable, '-c', blocks('python', page)[0]], clone).startswith(begins)
 
 
-# Interpreted: each is of another kind of space, and takes a second at most.
-@pytest.mark.sweep  # test_cluster.py has a cluster
-def test_python_of_many_jobs_prints_what_the_page_says(clone: Path) -> None:
-    program = '\n'.join(blocks('python', 'parallel'))
+# Interpreted: each is of another kind of space. What they show is tested elsewhere with less.
+@pytest.mark.sweep
+def test_python_of_many_jobs_and_steps_prints_what_the_pages_say(clone: Path) -> None:
+    program = '\n'.join([*blocks('python', 'parallel'), blocks('python', 'sampling')[1]])
     out = run([sys.executable, '-c', program], clone, modes.Mode.INTERPRETED)
-    threads, dask, cluster = out.splitlines()
+    threads, dask, cluster, moves = out.splitlines()
     assert threads == "['SOLVED', 'SOLVED', 'SOLVED']"
     assert dask == '(3, 5, 2)'
     assert cluster.startswith('(6, 500, 4) converged')
-
-
-def test_other_python_runs_and_prints_what_the_pages_say(clone: Path) -> None:
-    (wall,) = blocks('python', 'failures')
-    program = '\n'.join([wall, blocks('python', 'sampling')[1]])
-    out = run([sys.executable, '-c', program], clone, modes.Mode.INTERPRETED)
-    failure, moves = out.splitlines()
-    assert failure.startswith('UNREACHABLE ')
     assert moves.startswith('[')
+
+
+def test_python_of_a_failure_prints_what_the_page_says(clone: Path) -> None:
+    (wall,) = blocks('python', 'failures')
+    out = run([sys.executable, '-c', wall], clone, modes.Mode.INTERPRETED)
+    assert out.startswith('UNREACHABLE ')
 
 
 #: Pages of the site that are made when it is built.

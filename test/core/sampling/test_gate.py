@@ -150,8 +150,8 @@ def test_the_right_walk_passes(name):
     ('walk', 'caught_by'),
     [
         (forward_ray_only, ('T1', 'T2', 'T3')),
-        (direction_from_a_box, ('T1',)),
-        (directions_in_whole_degrees, ('T1',)),
+        sweep(direction_from_a_box, ('T1',)),
+        sweep(directions_in_whole_degrees, ('T1',)),
         (all_pieces_of_the_line, ('T1',)),
         (beta_on_the_chord, ('T1',)),
         (ends_cut, ('T5',)),

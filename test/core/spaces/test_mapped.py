@@ -49,6 +49,7 @@ def test_points_and_chords_are_those_of_the_image():
     assert (upper > 1.0).all()
 
 
+@pytest.mark.sweep
 def test_draws_mapped_back_are_uniform_in_the_base():
     """2 x 2,000 draws, 30 steps apart; a p-value below 1e-7 once in 3e6 runs."""
     space = pickle.loads(pickle.dumps(MappedSpace(twist, untwist, BAR, resolution=0.02)))

@@ -11,6 +11,7 @@ from test.core.trajectories.worlds import (
     START,
     state,
 )
+from test.sweeps import sweep
 from typing import Any
 
 from hnr_planner.core import plan_trajectory, PlannerStatus, TrajectoryResult
@@ -42,8 +43,8 @@ CASES = [
     ('kinodynamic_rrt', INTEGRATOR, {'boundary': 'inelastic'}),
     ('kinodynamic_rrt', INTEGRATOR, {'boundary': 'inelastic', 'transition': 'step'}),
     pytest.param('kinodynamic_rrt', CAR, {}, marks=pytest.mark.interpreted),
-    pytest.param('kinodynamic_rrt', CAR, {'boundary': 'inelastic'}, marks=pytest.mark.interpreted),
-    ('kinodynamic_hit_and_run', INTEGRATOR, {'time_step': 0.4}),
+    sweep('kinodynamic_rrt', CAR, {'boundary': 'inelastic'}),
+    sweep('kinodynamic_hit_and_run', INTEGRATOR, {'time_step': 0.4}),
     ('kinodynamic_hit_and_run', INTEGRATOR, {'boundary': 'inelastic', 'time_step': 0.4}),
     ('kinodynamic_connect', INTEGRATOR, {}),
 ]

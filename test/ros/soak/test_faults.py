@@ -79,6 +79,7 @@ def map_file(folder: Path, world: World) -> Path:
     return file
 
 
+@pytest.mark.sweep
 def test_node_that_is_killed_leaves_clients_that_can_ask_the_next_one(
     tmp_path: Path, tell: Tell
 ) -> None:
@@ -154,6 +155,7 @@ def searching(
             yield planner, futures
 
 
+@pytest.mark.sweep
 @pytest.mark.parametrize('where', [*(WAY_TO if EFFORT.rounds > 1 else ()), 'searching'])
 def test_end_is_prompt_in_every_state(tmp_path: Path, where: str, tell: Tell) -> None:
     """

@@ -124,6 +124,7 @@ def complaints(world: World, one: Answered) -> list[str]:
     return world.complaints(one.request, one.path) if one.path.poses else []
 
 
+@pytest.mark.sweep
 def test_paths_are_right_while_maps_arrive(
     client: Client, planner: NodeProcess, tell: Tell
 ) -> None:
