@@ -9,8 +9,10 @@ from hnr_planner.maps import OccupancyMap
 import pytest
 
 
+@pytest.mark.sweep
 @pytest.mark.usefixtures('compiled')
 def test_it_compiles_what_is_missing_and_says_how_much(run: Callable[..., Ran]) -> None:
+    """All kernels of all uses: the tests do with less."""
     ran = run('compile')
     assert ran.code == 0
     first, *_, last = ran.out.splitlines()

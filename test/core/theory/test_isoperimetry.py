@@ -15,6 +15,7 @@ def test_the_inequality_holds(name):
     assert divided(name).ratio > 1.1
 
 
+@pytest.mark.sweep
 def test_it_would_not_hold_without_the_third():
     """The mutant: h = min(1, d)."""
     assert sum(divided(name).ratio / 3.0 < 0.9 for name in DIVIDED) == 4

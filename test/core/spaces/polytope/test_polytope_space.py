@@ -1,5 +1,7 @@
 """Polytopes from inequalities as people write them, thin ones, and why others are refused."""
 
+from test.sweeps import sweep
+
 from hnr_planner.core import PolytopeSpace, sample, SpaceError
 import numpy as np
 import pytest
@@ -69,7 +71,7 @@ def test_what_is_no_polytope_is_refused_for_the_true_reason(a, b, reason):
         PolytopeSpace(a, b)
 
 
-@pytest.mark.parametrize(('dim', 'decades'), [(2, 8), (2, 12), (20, 10)])
+@pytest.mark.parametrize(('dim', 'decades'), [(2, 8), (2, 12), sweep(20, 10)])
 def test_a_simplex_with_axes_of_very_different_lengths_is_sampled(dim: int, decades: int):
     """
     Mean of the coordinates over their lengths: 1 / (dim + 1), each with a Beta(1, dim) law.
