@@ -85,13 +85,12 @@ def _search(
     They are the start and the goals that may be reached, kernel frame.
     """
     searches = PoseSearches(request, disc, roots, budget, began)
-    found, work = searches.until_free()
-    best = found
-    if found.path is not None and effort.optimizes:
+    best, work = searches.first()
+    if best.path is not None and effort.optimizes:
         optimizing = effort.optimizing(budget, began)
-        best, work = searches.optimize(found, work, effort.optimize_rounds, optimizing)
+        best, work = searches.optimize(best, work, effort.optimize_rounds, optimizing)
         budget.cut = budget.cut or optimizing.cut
-    samples = request.space.from_kernel(found.search.samples)
+    samples = request.space.from_kernel(best.search.samples)
     samples[0] = request.start
     path = best.path or NO_PATH
     return PlanResult(
@@ -102,13 +101,13 @@ def _search(
         twists=path.twists,
         length=path.length,
         samples=samples,
-        parents=found.search.parents.copy(),
+        parents=best.search.parents.copy(),
         iterations=work.iterations,
         counts=work.counts,
         elapsed=working_time() - began,
         seed=request.seed,
         cut_by_time=budget.cut,
-        first_solution=found.first,
+        first_solution=best.first,
         lower_bound=_straight(request),
     )
 

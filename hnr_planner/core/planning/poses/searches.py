@@ -1,10 +1,15 @@
 """
-Searches for one request for a path of poses: the first, and further ones for a cheaper path.
+Searches for one request for a path of poses.
 
-Each has its own random streams, so that its result does not depend on the searches before it.
+What a path costs depends on how the robot gets out of its start and into its goal, which differs
+from search to search. So searches are *raced*: the path of each is shortened roughly, and the
+cheapest one to the end. The answer is the winner of one race, unless the first search was long;
+while the caller asks for a cheaper path, further races are run.
+
+Each search has its own random streams, so that its result does not depend on those before it.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, reduce
 import math
 from typing import NamedTuple
@@ -27,14 +32,22 @@ from hnr_planner.core.spaces.poses.disc import Disc
 import numpy as np
 
 #: Purposes of random streams.
-SEARCH, SHORTEN = 0, 1
+SEARCH, ROUGH, SHORTEN = 0, 1, 2
 #: Sections that are tried at once, for each motion of a path and at least.
 TRIES_PER_MOTION, TRIES_MIN = 4, 40
 #: Rounds of tries for one path, and consecutive rounds that lower the cost by less than the
 #: fraction ``LEAST_GAIN`` after which it counts as short.
 ROUNDS_MAX, PATIENCE, LEAST_GAIN = 60, 3, 2e-3
+#: Rounds of tries after which the paths of a race are compared: they take about 30 % of the time,
+#: and most paths become less than 5 % cheaper after them.
+ROUGH_ROUNDS = 1
+#: Number of searches in a race, and number of transitions after which the first race gets no
+#: further search: then another path is not worth the wait.
+N_RACED, TRANSITIONS_MAX = 3, 1000
 #: Largest number of searches, where the caller's coordinates round a path into an obstacle.
 RESTARTS_MAX = 20
+#: Number of the first search of the further races.
+FURTHER = RESTARTS_MAX + N_RACED
 
 
 class PoseAttempt(NamedTuple):
@@ -50,10 +63,11 @@ class PoseAttempt(NamedTuple):
     search : PoseSearch
         The search in the state in which it ended.
     path : PosePath or None
-        The path, shortened where the request asks for it; None where there is none that is free
-        in the caller's coordinates.
+        The path, shortened roughly or to the end where the request asks for it; None where there
+        is none that is free in the caller's coordinates.
     first : FirstSolution or None
-        The path as found; None where there is no path.
+        The path as found, that of the first search in the winner of a race; None where there is
+        no path.
 
     """
 
@@ -95,12 +109,12 @@ class PoseSearches:
     budget: Budget
     began: float
 
-    def until_free(self) -> tuple[PoseAttempt, Work]:
+    def first(self) -> tuple[PoseAttempt, Work]:
         """
-        Search until a path is free in the caller's coordinates; return that search, and the work.
+        Return the winner of the first race, and the work of its searches.
 
-        A path that these round into an obstacle does not count: then the search is repeated, at
-        most ``RESTARTS_MAX`` times in all. The path is None where none was found.
+        A path that the caller's coordinates round into an obstacle does not count: then the search
+        is repeated, at most ``RESTARTS_MAX`` times in all. The path is None where none was found.
         """
         searches: list[PoseSearch] = []
 
@@ -109,27 +123,49 @@ class PoseSearches:
             return searches[-1]
 
         status, search, path = search_until_free(start, self._free_path, self.budget, RESTARTS_MAX)
-        work = reduce(Work.plus, map(Work.of, searches))
-        return self._attempt(len(searches) - 1, status, search, path, self.budget), work
+        work, number = reduce(Work.plus, map(Work.of, searches)), len(searches) - 1
+        found = self._attempt(number, status, search, path, self.budget)
+        is_raced = self.request.simplify and 0.0 < found.cost < math.inf
+        if not is_raced or search.iterations > TRANSITIONS_MAX:
+            return self._finished(found, self.budget), work
+        budget = replace(
+            self.budget, max_iterations=min(self.budget.max_iterations, TRANSITIONS_MAX)
+        )
+        best, work = self._race([found], work, range(number + 1, number + N_RACED), budget)
+        self.budget.cut = self.budget.cut or budget.cut
+        return best._replace(first=found.first), work
 
     def optimize(
         self, found: PoseAttempt, work: Work, rounds: float, budget: Budget
     ) -> tuple[PoseAttempt, Work]:
         """
-        Search on for cheaper paths; return the best, and the work of all searches.
+        Run further races; return the cheapest attempt, and the work of all searches.
 
-        The rounds end once the number of a search would be above ``rounds`` or a limit of the
-        budget is met.
+        The races end after ``rounds`` searches, or once a limit of the budget is met.
         """
-        best, number = found, found.number + 1
-        while number <= rounds and budget.stop() is None:
+        best, n = found, 0
+        while n < rounds and budget.stop() is None:
+            end = int(min(n + N_RACED, rounds))
+            again, work = self._race([], work, range(FURTHER + n, FURTHER + end), budget)
+            best, n = min(best, again, key=lambda each: each.cost), end
+        return best._replace(first=found.first), work
+
+    def _race(
+        self, attempts: list[PoseAttempt], work: Work, numbers: range, budget: Budget
+    ) -> tuple[PoseAttempt, Work]:
+        """
+        Race attempts with the searches of some numbers, within a budget.
+
+        Return the cheapest of all, its path shortened to the end, and the work with that of the
+        searches added to it.
+        """
+        for number in numbers:
             search = self._search(number)
             status = run(search, budget)
             path = self._free_path(search) if status is PlannerStatus.SOLVED else None
-            again = self._attempt(number, status, search, path, budget)
-            work, number = work.plus(Work.of(search)), number + 1
-            best = min(best, again, key=lambda each: each.cost)
-        return best, work
+            attempts.append(self._attempt(number, status, search, path, budget))
+            work = work.plus(Work.of(search))
+        return self._finished(min(attempts, key=lambda each: each.cost), budget), work
 
     def _search(self, number: int) -> PoseSearch:
         """Return the search of a number, which has not begun."""
@@ -148,14 +184,21 @@ class PoseSearches:
         path: PosePath | None,
         budget: Budget,
     ) -> PoseAttempt:
-        """Return what became of a search; its path is shortened where the request asks for it."""
-        request = self.request
+        """Return what became of a search; its path is shortened roughly."""
         if path is None:
             return PoseAttempt(number, status, search, None, None)
         first = FirstSolution(working_time() - self.began, path.length, path.poses)
-        if request.simplify and path.cost > 0.0:
-            path = _shortened(request, path, request.stream(SHORTEN, number), budget)
+        rng = self.request.stream(ROUGH, number)
+        path = _shortened(self.request, path, rng, ROUGH_ROUNDS, budget)
         return PoseAttempt(number, status, search, path, first)
+
+    def _finished(self, attempt: PoseAttempt, budget: Budget) -> PoseAttempt:
+        """Return an attempt, its path shortened to the end."""
+        if attempt.path is None:
+            return attempt
+        rng = self.request.stream(SHORTEN, attempt.number)
+        path = _shortened(self.request, attempt.path, rng, ROUNDS_MAX, budget)
+        return attempt._replace(path=path)
 
     @cached_property
     def _guide(self) -> Floats:
@@ -189,8 +232,16 @@ def _checked(request: PoseRequest, poses: Floats, twists: Floats) -> PosePath | 
     return PosePath(*path) if is_free else None
 
 
-def _shortened(request: PoseRequest, path: PosePath, rng: Stream, budget: Budget) -> PosePath:
-    """Return the path with sections replaced by cheaper ones, within the budget."""
+def _shortened(
+    request: PoseRequest, path: PosePath, rng: Stream, rounds: int, budget: Budget
+) -> PosePath:
+    """
+    Return a path with sections replaced by cheaper ones, where the request asks for it.
+
+    At most a number of rounds of tries is made, within the budget.
+    """
+    if not request.simplify or path.cost == 0.0:
+        return path
     space, n = request.space, len(path.twists)
     rows = 2 * n + 4 * SPARE_ROWS
     poses, twists = np.zeros((rows + 1, 3)), np.zeros((rows, 3))
@@ -199,7 +250,7 @@ def _shortened(request: PoseRequest, path: PosePath, rng: Stream, budget: Budget
     spare = np.zeros((rows + 1, 3)), np.zeros((rows, 3))
     found, prices = empty_connections(), request.prices
     cost, idle = path.cost, 0
-    for _ in range(ROUNDS_MAX):
+    for _ in range(rounds):
         if idle >= PATIENCE or budget.stop() is not None:
             break
         tries = max(TRIES_MIN, TRIES_PER_MOTION * n)

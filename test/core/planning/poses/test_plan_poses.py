@@ -5,6 +5,7 @@ from test.core.planning.poses.test_words import DRIVES
 from test.core.spaces.poses.robots import checker, L_SHAPE, RECTANGLE
 
 from hnr_planner.core import GridSpace, plan, PlannerStatus, PoseSpace, RequestError, RRT
+from hnr_planner.core.planning.poses import searches
 from hnr_planner.core.planning.poses.attempt import ADDED_AT_FIRST
 from hnr_planner.core.planning.poses.search import N_ADDED
 import numpy as np
@@ -95,12 +96,44 @@ def price(space, result):
     return np.abs(driven).sum() - driven[driven < 0.0].sum() + radius * n_changes
 
 
+def answers_of_races(space, requests, n, monkeypatch):
+    """Return the answers to requests (k, 2, 3) whose first race has at most n searches."""
+    monkeypatch.setattr(searches, 'N_RACED', n)
+    results = [plan(space, *request, seed=7, **PATIENT) for request in requests]
+    for result, request in zip(results, requests, strict=True):
+        check(space, result, *request)
+    return results
+
+
+@pytest.mark.sweep
+def test_a_race_of_three_searches_finds_cheaper_paths_than_one_search(monkeypatch):
+    blocked = np.zeros((44, 44), dtype=bool)
+    for row in range(9, 11):
+        blocked[row::12, 9::12] = True  # pillars that leave little room to turn
+    space = PoseSpace(GridSpace.from_blocked(blocked, 0.1), RECTANGLE, **DRIVES['car'])
+    poses = np.random.default_rng(0).uniform(*space.bounds, (200, 3))
+    requests = poses[space.contains(poses)][:40].reshape(20, 2, 3)
+    alone, raced = (answers_of_races(space, requests, n, monkeypatch) for n in (1, 3))
+    costs = [sum(price(space, result) for result in results) for results in (alone, raced)]
+    assert costs[1] < 0.97 * costs[0]
+    for one, three in zip(alone, raced, strict=True):
+        assert three.first_solution.length == one.first_solution.length
+        assert three.iterations >= one.iterations
+
+
+def test_a_long_search_is_not_raced(monkeypatch):
+    monkeypatch.setattr(searches, 'TRANSITIONS_MAX', -1)
+    space, requests = hall(**DRIVES['car']), [(START, GOAL)]
+    alone, raced = (answers_of_races(space, requests, n, monkeypatch)[0] for n in (1, 3))
+    np.testing.assert_array_equal(alone.path, raced.path)
+
+
 @pytest.mark.sweep
 def test_further_searches_never_make_a_path_dearer():
     space, saved = hall(**DRIVES['car']), []
     for goal in (GOAL, (7.0, 1.0, 2.0), (7.0, 5.0, -1.6), (5.0, 1.0, 1.5)):
         once = plan(space, START, goal, seed=6, **PATIENT)
-        more = plan(space, START, goal, seed=6, optimize_iterations=3, **PATIENT)
+        more = plan(space, START, goal, seed=6, optimize_iterations=12, **PATIENT)
         check(space, more, goal=goal)
         saved.append(price(space, once) - price(space, more))
     assert min(saved) >= -1e-9
