@@ -17,9 +17,13 @@ from hnr_planner.core.spaces.curves.surfaces import (
     max_gap_of,
     own_max_gap,
 )
+from hnr_planner.core.spaces.primitives import longest_apart
 from hnr_planner.core.spaces.space import Space
 import numpy as np
 from numpy.typing import ArrayLike
+
+#: Rounding of a distance, as a fraction of it.
+ROUNDING = 1e-14
 
 
 @convex
@@ -141,18 +145,23 @@ def _piece_contains(balls, k, x, closed):
 @piece_span.register(BallData)
 @inlined
 def _piece_span(balls, k, x, u, closed):
-    """
-    Return the interval of parameters s of the line ``x + s u`` in ball ``k``.
-
-    Its ends are the roots of a s^2 + 2 b s + c; (inf, -inf) where the line misses the ball.
-    """
+    """Return the interval of the line ``x + s u`` in ball ``k``; (inf, -inf) for none."""
     a, b, squared = 0.0, 0.0, 0.0
     for i in range(len(x)):
         offset = x[i] - balls.centres[k, i]
         a += u[i] * u[i]
         b += u[i] * offset
         squared += offset * offset
-    c = squared - balls.radii[k] ** 2
+    return _between_roots(a, b, squared - balls.radii[k] ** 2, closed)
+
+
+@inlined
+def _between_roots(a, b, c, closed):
+    """
+    Return the interval of s at which a s^2 + 2 b s + c is below 0: its ends are the roots.
+
+    It is (inf, -inf) where there is none; a single point counts when ``closed``.
+    """
     discriminant = b * b - a * c
     if discriminant < 0.0 or (discriminant == 0.0 and not closed):
         return math.inf, -math.inf
@@ -163,6 +172,57 @@ def _piece_span(balls, k, x, u, closed):
     if root > b:
         return c / (root - b), (root - b) / a
     return 0.0, 0.0
+
+
+@longest_apart.register(BallData)
+@kernel
+def _longest_apart(balls, x, directions, ends):
+    """
+    Return which ray from ``x`` touches a ball last, and the parameter where it does.
+
+    Distances from ``x`` are computed once for all rays, and a ray looks only at balls that are
+    nearer than its end.
+    """
+    gaps, powers = np.empty(len(balls.radii)), np.empty(len(balls.radii))
+    for k in range(len(balls.radii)):
+        squared = 0.0
+        for i in range(len(x)):
+            squared += (x[i] - balls.centres[k, i]) ** 2
+        powers[k] = squared - balls.radii[k] ** 2
+        gaps[k] = (1.0 - ROUNDING) * math.sqrt(squared) - balls.radii[k]
+    longest, end = 0, 0.0
+    for k in range(len(directions)):
+        if ends[k] > end:
+            reach = _reach(balls, x, directions[k], gaps, powers, end, ends[k])
+            if reach > end:
+                longest, end = k, reach
+    return longest, end
+
+
+@inlined
+def _reach(balls, x, u, gaps, powers, t, end):
+    """
+    Return the first parameter up to ``end`` at which a ray touches a ball; or a value up to ``t``.
+
+    ``gaps`` (k,) are the distances from ``x`` to the balls, not rounded up, and ``powers`` (k,)
+    those of ``x`` with respect to the spheres: squared distance from the centre minus that of the
+    sphere.
+    """
+    a = 0.0
+    for i in range(len(u)):
+        a += u[i] * u[i]
+    length = math.sqrt(a)
+    for k in range(len(gaps)):
+        if gaps[k] < end * length:
+            b = 0.0
+            for i in range(len(u)):
+                b += u[i] * (x[i] - balls.centres[k, i])
+            lower, upper = _between_roots(a, b, powers[k], True)
+            if lower <= end and upper >= 0.0:
+                end = max(0.0, lower)
+                if end <= t:
+                    break
+    return end
 
 
 @add_crossings.register(BallData)

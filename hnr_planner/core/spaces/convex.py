@@ -86,6 +86,7 @@ def convex(data_type: DataType) -> DataType:
         (primitives.chord, _chord),
         (primitives.gap, _gap),
         (primitives.segment_is_free, _segment_is_free),
+        (primitives.is_visible, _is_visible),
         (primitives.line_touches, _line_touches),
         (primitives.entry_beyond, _entry_beyond),
         (span_end_at, _span_end_at),
@@ -175,6 +176,12 @@ def _segment_is_free(space, a, b):
     """Return whether the segment from ``a`` to ``b`` is in the union of the pieces."""
     if not (_any_contains(space, a, False) and _any_contains(space, b, False)):
         return False
+    return _is_visible(space, a, b)
+
+
+@kernel
+def _is_visible(space, a, b):
+    """Return whether the segment between two free points is in the union of the pieces."""
     if count_pieces(space) == 1:  # which is convex
         return True
     u = b - a

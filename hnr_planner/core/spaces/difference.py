@@ -24,12 +24,16 @@ from hnr_planner.core.spaces.primitives import (
     first_entry,
     first_exit,
     gap,
+    is_visible,
     line_touches,
+    longest_apart,
+    longest_ray,
     segment_is_free,
     touches,
 )
 from hnr_planner.core.spaces.space import Space
 from hnr_planner.core.spaces.union import UnionSpace
+import numpy as np
 from numpy.typing import ArrayLike
 
 
@@ -183,12 +187,23 @@ def _segment_is_free(difference, a, b):
 
     Where the line touches something a rounding beyond an end, the end itself decides.
     """
-    if not segment_is_free(difference.base, a, b):
-        return False
-    u = b - a
-    if u.any() and line_touches(difference.removed, a, u, 1.0):
+    if not segment_is_free(difference.base, a, b) or _meets_removed(difference, a, b):
         return False
     return not (touches(difference.removed, a) or touches(difference.removed, b))
+
+
+@is_visible.register(DifferenceData)
+@kernel
+def _is_visible(difference, a, b):
+    """Return whether the segment between two free points keeps to the base and off the rest."""
+    return is_visible(difference.base, a, b) and not _meets_removed(difference, a, b)
+
+
+@kernel
+def _meets_removed(difference, a, b):
+    """Return whether the line from ``a`` to ``b``, if these differ, touches what is removed."""
+    u = b - a
+    return u.any() and line_touches(difference.removed, a, u, 1.0)
 
 
 @exit_beyond.register(DifferenceData)
@@ -197,6 +212,16 @@ def _exit_beyond(difference, x, u, t):
     """Return the exit of the ray if it is beyond ``t``; else a value up to ``t``."""
     end = first_exit(difference.base, x, u, 0.0, math.inf)
     return end if end <= t else entry_beyond(difference.removed, x, u, t, end)
+
+
+@longest_ray.register(DifferenceData)
+@kernel
+def _longest_ray(difference, x, directions):
+    """Return which ray, cut at the end of the base, touches the removed spaces last, and where."""
+    ends = np.empty(len(directions))
+    for k in range(len(directions)):
+        ends[k] = first_exit(difference.base, x, directions[k], 0.0, math.inf)
+    return longest_apart(difference.removed, x, directions, ends)
 
 
 @component.register(DifferenceData)

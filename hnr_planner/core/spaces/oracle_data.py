@@ -20,6 +20,7 @@ from hnr_planner.core.spaces.primitives import (
     first_blocked,
     first_entry,
     first_exit,
+    is_visible,
     segment_is_free,
     touches,
 )
@@ -164,15 +165,22 @@ def _segment_is_free(oracle, a, b):
     and all points tested between them have to be free.
     """
     if oracle.motion != 0:
-        n = len(a)
-        ends, answer = np.empty(2 * n), np.empty(1)
-        for i in range(n):
-            ends[i], ends[n + i] = a[i] + oracle.origin[i], b[i] + oracle.origin[i]
-        if ask(oracle.motion, ends, answer) != 0:
-            raise OracleError
-        return answer[0] != 0.0
-    if not (_contains(oracle, b) and _contains(oracle, a)):
-        return False
+        return _ask_motion(oracle, a, b)
+    return _contains(oracle, b) and _contains(oracle, a) and _is_free_between(oracle, a, b)
+
+
+@is_visible.register(OracleData)
+@kernel
+def _is_visible(oracle, a, b):
+    """Return whether the segment between two free points is free: the points are not tested."""
+    if oracle.motion != 0:
+        return _ask_motion(oracle, a, b)
+    return _is_free_between(oracle, a, b)
+
+
+@kernel
+def _is_free_between(oracle, a, b):
+    """Return whether a chord from ``a`` reaches beyond ``b``, or all points tested are free."""
     if oracle.chord != 0:
         u = b - a
         return not u.any() or _first_exit(oracle, a, u, 0.0, 1.0) > 1.0
@@ -268,6 +276,18 @@ def _is_in(oracle, x, u, s, work):
         work[i] += oracle.origin[i]
     point, answer = work[:n], work[n:]
     if ask(oracle.membership, point, answer) != 0:
+        raise OracleError
+    return answer[0] != 0.0
+
+
+@kernel
+def _ask_motion(oracle, a, b):
+    """Return the answer of the function of two points (dim,): whether the segment is free."""
+    n = len(a)
+    ends, answer = np.empty(2 * n), np.empty(1)
+    for i in range(n):
+        ends[i], ends[n + i] = a[i] + oracle.origin[i], b[i] + oracle.origin[i]
+    if ask(oracle.motion, ends, answer) != 0:
         raise OracleError
     return answer[0] != 0.0
 

@@ -121,6 +121,13 @@ def segment_is_free(space: CompiledSpace, a: Floats, b: Floats) -> bool:
 
 @dispatched
 @kernel
+def is_visible(space: CompiledSpace, a: Floats, b: Floats) -> bool:
+    """Return whether every point of the segment between two free points (dim,) is free."""
+    return segment_is_free(space, a, b)
+
+
+@dispatched
+@kernel
 def line_touches(space: CompiledSpace, x: Floats, u: Floats, end: float) -> bool:
     """Return whether the line ``x + s u`` touches ``space`` at a parameter from 0 to ``end``."""
     return first_entry(space, x, u, 0.0) <= end
@@ -149,6 +156,42 @@ def exit_beyond(space: CompiledSpace, x: Floats, u: Floats, t: float) -> float:
     some of them only and return a rough value; ``first_blocked`` looks at the others.
     """
     return first_exit(space, x, u, 0.0, math.inf)
+
+
+@dispatched
+@kernel
+def longest_ray(space: CompiledSpace, x: Floats, directions: Floats) -> tuple[int, float]:
+    """
+    Return which of the rays from ``x`` along ``directions`` (n, dim) is the longest, and its end.
+
+    The end is the parameter that ``exit_beyond`` returns.
+    """
+    longest, end = 0, 0.0
+    for k in range(len(directions)):
+        reach = exit_beyond(space, x, directions[k], end)
+        if reach > end:
+            longest, end = k, reach
+    return longest, end
+
+
+@dispatched
+@kernel
+def longest_apart(
+    space: CompiledSpace, x: Floats, directions: Floats, ends: Floats
+) -> tuple[int, float]:
+    """
+    Return which ray from ``x`` touches ``space`` last, and the parameter where it does.
+
+    The rays are those along ``directions`` (n, dim), each up to its parameter in ``ends`` (n,),
+    which is returned for a ray that touches the space nowhere before.
+    """
+    longest, end = 0, 0.0
+    for k in range(len(directions)):
+        if ends[k] > end:
+            reach = entry_beyond(space, x, directions[k], end, ends[k])
+            if reach > end:
+                longest, end = k, reach
+    return longest, end
 
 
 @dispatched

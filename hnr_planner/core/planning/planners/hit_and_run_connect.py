@@ -38,9 +38,9 @@ from hnr_planner.core.spaces.lines import draw_direction
 from hnr_planner.core.spaces.oracle_data import OracleData
 from hnr_planner.core.spaces.primitives import (
     component,
-    exit_beyond,
     first_blocked,
-    segment_is_free,
+    is_visible,
+    longest_ray,
 )
 from hnr_planner.core.trees import NONE
 import numpy as np
@@ -71,8 +71,8 @@ class FrontierTrees(NamedTuple):
         Rows in ``table`` of the vertices of each tree, one column for each tree.
     frontier : Frontier
         Bins from which the next vertex to grow each tree is chosen.
-    directions : (2, dim)
-        Work array of a step: the direction drawn last, and the direction of the longest free ray.
+    directions : (n, dim)
+        Work array of a step: the directions of the rays that it chooses from.
 
     """
 
@@ -165,11 +165,12 @@ def _plant(problem, rows):
     The tree of the goal stays empty where the goal lies in another component, another connected
     part of free space, than the start.
     """
+    dim = len(problem.start)
     trees = FrontierTrees(
-        empty_trees(rows, len(problem.start)),
+        empty_trees(rows, dim),
         np.empty((rows, 2), dtype=np.int64),
         empty_frontier(problem.lower, problem.upper, problem.typical_clearance),
-        np.empty((2, len(problem.start))),
+        np.empty((N_RAYS if dim <= 2 else N_RAYS_IN_SPACE, dim)),
     )
     copy_into(trees.table.vertices[0], problem.start)
     _add(trees, 0, NONE)
@@ -214,15 +215,11 @@ def _step(space, x, rng, directions, y):
 
     The end is uniform on the outer section of the ray. Returns the number of redraws.
     """
-    in_plane = len(x) <= 2
-    u, best, longest = directions[0], directions[1], 0.0
-    for _ in range(N_RAYS if in_plane else N_RAYS_IN_SPACE):
-        draw_direction(space, rng, u)
-        reach = exit_beyond(space, x, u, longest)
-        if reach > longest:
-            longest = reach
-            copy_into(best, u)
-    return _draw_on_ray(space, x, best, INNER if in_plane else INNER_IN_SPACE, longest, rng, y)
+    for k in range(len(directions)):
+        draw_direction(space, rng, directions[k])
+    k, end = longest_ray(space, x, directions)
+    inner = INNER if len(x) <= 2 else INNER_IN_SPACE
+    return _draw_on_ray(space, x, directions[k], inner, end, rng, y)
 
 
 @kernel
@@ -258,7 +255,7 @@ def _meet(space, trees, row, bin_number, other, rng):
     Return the row of a vertex of tree ``other`` visible from vertex ``row``; NONE if not found.
 
     Tested are the newest vertices in the bin of number ``bin_number`` and, in the plane, in the 8
-    bins around it, and then vertices drawn uniformly, or each of a tree that has no more.
+    bins around it, and then different vertices drawn uniformly.
     """
     vertices, size = trees.table.vertices, trees.table.sizes[other]
     if size == 0:
@@ -269,12 +266,15 @@ def _meet(space, trees, row, bin_number, other, rng):
     for below in range(-around, around + 1):
         for beside in range(-around, around + 1):
             k = newest[other, bin_number + columns * below + beside]
-            if k != NONE and segment_is_free(space, vertices[row], vertices[k]):
+            if k != NONE and is_visible(space, vertices[row], vertices[k]):
                 return k
     n_uniform = N_UNIFORM if in_plane else N_UNIFORM_IN_SPACE
-    each = not in_plane and size <= n_uniform
-    for i in range(size if each else n_uniform):
-        k = trees.members[i if each else int(size * uniform(rng)), other]
-        if segment_is_free(space, vertices[row], vertices[k]):
+    members = trees.members[:, other]
+    for i in range(min(n_uniform, size)):
+        chosen = i + int((size - i) * uniform(rng))
+        k = members[chosen]
+        if is_visible(space, vertices[row], vertices[k]):
             return k
+        if n_uniform > 1:  # the next draws are without those before
+            members[chosen], members[i] = members[i], k
     return NONE
