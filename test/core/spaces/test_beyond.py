@@ -11,7 +11,9 @@ from hnr_planner.core.spaces.primitives import (
     first_blocked,
     first_entry,
     first_exit,
+    is_visible,
     line_touches,
+    longest_ray,
     segment_is_free,
 )
 import numpy as np
@@ -35,12 +37,21 @@ def _solids() -> DifferenceSpace:
     )
 
 
+def _among_balls() -> DifferenceSpace:
+    """Return a box without balls, of which some overlap and some lie outside."""
+    centres = np.random.default_rng(6).uniform(-0.2, 1.2, (20, 4))
+    return DifferenceSpace(
+        BoxSpace(np.zeros(4), np.ones(4)), *(BallSpace(centre, 0.35) for centre in centres)
+    )
+
+
 def _is_in_ring(x: NDArray) -> bool:
     return bool(0.3 < np.hypot(x[0], x[1]) < 1.0)
 
 
 SPACES = {
     'solids': _solids,
+    'balls': _among_balls,
     'union': lambda: UnionSpace(BoxSpace((0, 0), (2, 1)), BallSpace((2, 1), 0.7)),
     'oracle': lambda: OracleSpace(_is_in_ring, (-1.1, -1.2), (1.2, 1.1), resolution=0.08),
 }
@@ -86,6 +97,33 @@ def test_an_exit_beyond_a_parameter_is_the_exit(name: str) -> None:
             rough += blocked < math.inf
     assert 5 < beyond < N_LINES - 5
     assert (rough > 0) == isinstance(space, OracleSpace)
+
+
+@pytest.mark.parametrize('name', ['solids', 'balls', 'union'])
+def test_the_longest_ray_is_the_one_with_the_last_exit(name: str) -> None:
+    """The rays have directions of different lengths, and their ends are parameters."""
+    space, rng = SPACES[name](), np.random.default_rng(8)
+    longest = set()
+    for x, _, _ in _lines(space):
+        directions = rng.normal(size=(5, len(x)))
+        ends = [exit_beyond.interpreted(space.data, x, u, 0.0) for u in directions]
+        k, end = longest_ray.interpreted(space.data, x, directions)
+        assert (k, end) == (int(np.argmax(ends)), max(ends))
+        longest.add(k)
+    assert len(longest) == 5
+
+
+@pytest.mark.parametrize('name', SPACES)
+def test_a_segment_between_free_points_is_free_where_one_sees_the_other(name: str) -> None:
+    """A point sees itself, too."""
+    space = SPACES[name]()
+    visible = 0
+    points = [x for x, _, _ in _lines(space)]
+    for a, b in zip(points, points[1:] + points[-1:], strict=True):
+        sees = is_visible.interpreted(space.data, a, b)
+        assert sees == segment_is_free.interpreted(space.data, a, b)
+        visible += sees
+    assert 1 < visible < len(points)
 
 
 @pytest.mark.parametrize('name', SPACES)
