@@ -3,6 +3,7 @@
 import ast
 from collections.abc import Iterator
 from distutils.core import run_setup  # with setuptools, also on Python 3.12
+from functools import cache
 import importlib.util
 import os
 from pathlib import Path
@@ -83,18 +84,21 @@ OPTIONAL = {'arviz', 'joblib'}
 OF_A_CLUSTER = {'dask', 'distributed'}
 
 
-def imports(path: Path) -> Iterator[str]:
-    """Yield the full name of every module that a file imports, wherever in it."""
+@cache
+def imports(path: Path) -> list[str]:
+    """Return the full name of every module that a file imports, wherever in it."""
     folder = path.parent.relative_to(ROOT).parts
+    found: list[str] = []
     for node in ast.walk(ast.parse(path.read_text(), str(path))):
         if isinstance(node, ast.Import):
-            yield from (alias.name for alias in node.names)
+            found.extend(alias.name for alias in node.names)
         elif isinstance(node, ast.ImportFrom):
             above = folder[: len(folder) + 1 - node.level] if node.level else ()
             base = '.'.join([*above, *filter(None, [node.module])])
             for alias in node.names:
                 full = f'{base}.{alias.name}'
-                yield full if full in MODULES else base
+                found.append(full if full in MODULES else base)
+    return found
 
 
 def source(module: str) -> Path:
