@@ -60,9 +60,13 @@ FIRST = (
     'test/test_package.py',
     'test/ros/',
 )
-#: Folders whose tests all run in one worker, since they share kernels and results of computations
-#: that nobody else needs.
-TOGETHER = ('test/laws/', 'test/core/theory/')
+#: Folders whose tests all run in one worker, since they share kernels, results of computations or a
+#: library that nobody else needs.
+TOGETHER = (
+    'test/laws/',
+    'test/core/theory/',
+    'test/core/sampling/diagnostics/',
+)
 #: Files whose tests compile into caches of their own.
 APART = ('test/core/kernels/test_tiers.py',)
 #: New objects after which Python looks for garbage: the compiler makes many, and few are garbage.

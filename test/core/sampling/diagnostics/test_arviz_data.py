@@ -7,9 +7,7 @@ import numpy as np
 import pytest
 
 
-def test_arviz_takes_the_draws_and_gives_our_figures():
-    import arviz  # which takes long, for this test alone
-
+def test_arviz_takes_the_draws_and_gives_our_figures(arviz):
     draws = autoregressive(0.5, 4, 300, 2, seed=0)
     data = to_arviz(draws)
     assert data['x'].dims[:2] == ('chain', 'draw')

@@ -3,7 +3,6 @@
 import math
 from test.core.sampling.diagnostics.chains import autoregressive
 
-import arviz
 from hnr_planner.core import diagnose
 from hnr_planner.core.sampling.diagnostics.effective import (
     ess_bulk,
@@ -40,7 +39,7 @@ def chains(phi, n_chains, n_draws, seed=0):
     ],
     ids=str,
 )
-def test_the_figures_are_those_of_arviz(values):
+def test_the_figures_are_those_of_arviz(values, arviz):
     found = diagnose(values[:, :, None])
     assert found.ess_bulk[0] == pytest.approx(arviz.ess(values, method='bulk'), rel=1e-12)
     assert found.ess_tail[0] == pytest.approx(arviz.ess(values, method='tail'), rel=1e-12)
@@ -86,7 +85,7 @@ def test_r_hat_detects_chains_that_differ_in_their_spread_only():
     assert r_hat(values) > 1.05
 
 
-def test_heavy_tails_hide_no_chain_that_is_elsewhere():
+def test_heavy_tails_hide_no_chain_that_is_elsewhere(arviz):
     """Draws without mean or variance; a variance of the draws themselves detects nothing."""
     values = np.random.default_rng(5).standard_cauchy((4, 1000))
     assert r_hat(values) < 1.01
@@ -95,7 +94,7 @@ def test_heavy_tails_hide_no_chain_that_is_elsewhere():
     assert r_hat(values) > 1.1
 
 
-def test_chains_that_never_move_are_worth_one_draw():
+def test_chains_that_never_move_are_worth_one_draw(arviz):
     """Arviz takes them for independent draws."""
     still = np.full((4, 1000), 0.3)
     assert arviz.ess(still) == still.size
