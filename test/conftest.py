@@ -48,6 +48,7 @@ FIRST = (
     'test/core/kernels/test_tiers.py',
     'test/cli/test_drawing.py',
     'test/maps/test_large_images.py',
+    'test/ros/one_node/',
     'test/experiments/test_experiments.py',
     'test/core/sampling/test_walk_laws.py',
     'test/cli/test_pages.py',
@@ -60,12 +61,13 @@ FIRST = (
     'test/test_package.py',
     'test/ros/',
 )
-#: Folders whose tests all run in one worker, since they share kernels, results of computations or a
-#: library that nobody else needs.
+#: Folders whose tests all run in one worker, since they share kernels, results of computations,
+#: a library or a node that nobody else needs.
 TOGETHER = (
     'test/laws/',
     'test/core/theory/',
     'test/core/sampling/diagnostics/',
+    'test/ros/one_node/',
 )
 #: Files whose tests compile into caches of their own.
 APART = ('test/core/kernels/test_tiers.py',)

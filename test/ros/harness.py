@@ -68,7 +68,7 @@ def until(
 
 
 class NodeProcess:
-    """A node in a process of its own; ``log`` is all that it has printed so far."""
+    """A node in a process of its own; ``log`` is what it has printed so far, or since a moment."""
 
     def __init__(self, module: str, log: Path, parameters: dict[str, Any], *arguments: str):
         settings = [
@@ -79,7 +79,7 @@ class NodeProcess:
         # A map that differs from the last in its cells only is told of quietly.
         settings += ['--log-level', 'hnr_planner:=debug']
         command = [sys.executable, '-m', f'hnr_planner.ros.node.{module}', '--ros-args', *settings]
-        self._log = log
+        self._log, self._begin = log, 0
         with log.open('w') as output:
             self.popen = subprocess.Popen(
                 [*command, *arguments],
@@ -91,8 +91,13 @@ class NodeProcess:
 
     @property
     def log(self) -> str:
-        """Return what the process has printed."""
-        return self._log.read_text()
+        """Return what the process has printed, since ``begin_log`` if that has been called."""
+        begin = self._begin
+        return self._log.read_bytes()[begin:].decode()
+
+    def begin_log(self) -> None:
+        """Leave what the process has printed so far out of ``log``."""
+        self._begin = self._log.stat().st_size
 
     def wait_for(self, text: str, timeout: float = 120.0) -> None:
         """Wait until ``text`` is on the log."""

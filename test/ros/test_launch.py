@@ -10,7 +10,7 @@ import signal
 import subprocess
 import sys
 from test.ros.harness import Client, pose, until
-from test.ros.test_lifecycle import ACTIVE, state, UNCONFIGURED
+from test.ros.transitions import ACTIVE, state, UNCONFIGURED
 from typing import Any
 
 from hnr_planner.server.requests.outcomes import Outcome

@@ -22,31 +22,28 @@ from test.ros.harness import (
     two_rooms,
     until,
 )
+from test.ros.transitions import (
+    ACTIVATE,
+    ACTIVE,
+    change,
+    CLEANUP,
+    CONFIGURE,
+    DEACTIVATE,
+    FINALIZED,
+    INACTIVE,
+    SHUTDOWN,
+    state,
+    UNCONFIGURED,
+    WAY_BACK,
+)
 
 from diagnostic_msgs.msg import DiagnosticArray
 from hnr_planner.server.requests.outcomes import Outcome
 from lifecycle_msgs.msg import Transition
-from lifecycle_msgs.srv import ChangeState, GetState
+from lifecycle_msgs.srv import ChangeState
 import pytest
 
 START, GOAL = pose(0.5, 0.6), pose(4.5, 0.7)
-UNCONFIGURED, INACTIVE, ACTIVE, FINALIZED = 'unconfigured', 'inactive', 'active', 'finalized'
-CONFIGURE, CLEANUP = Transition.TRANSITION_CONFIGURE, Transition.TRANSITION_CLEANUP
-ACTIVATE, DEACTIVATE = Transition.TRANSITION_ACTIVATE, Transition.TRANSITION_DEACTIVATE
-SHUTDOWN = {
-    UNCONFIGURED: Transition.TRANSITION_UNCONFIGURED_SHUTDOWN,
-    INACTIVE: Transition.TRANSITION_INACTIVE_SHUTDOWN,
-    ACTIVE: Transition.TRANSITION_ACTIVE_SHUTDOWN,
-}
-
-#: Transitions that lead to each state from the first one, and back.
-WAY_TO = {
-    UNCONFIGURED: (),
-    INACTIVE: (CONFIGURE,),
-    ACTIVE: (CONFIGURE, ACTIVATE),
-    FINALIZED: (SHUTDOWN[UNCONFIGURED],),
-}
-WAY_BACK = {ACTIVE: (DEACTIVATE, CLEANUP), INACTIVE: (CLEANUP,), UNCONFIGURED: ()}
 #: Draws that take hours, and so end by a cancellation; and the usual ones.
 ENDLESS = {'sample_count': 1_000_000, 'sample_thin': 100_000, 'time_limit': 60.0}
 USUAL = {'sample_count': 1000, 'sample_thin': 1, 'time_limit': 1.0}
@@ -64,24 +61,6 @@ def planner(tmp_path_factory: pytest.TempPathFactory) -> Iterator[NodeProcess]:
 def unconfigured(client: Client) -> None:
     """Lead the node back from where the test before left it."""
     assert all(change(client, *WAY_BACK[state(client)]))
-
-
-def change(client: Client, *transitions: int) -> list[bool]:
-    """Ask for transitions, one after the other; return whether each was made."""
-    return [
-        client.call(
-            ChangeState,
-            '/hnr_planner/change_state',
-            ChangeState.Request(transition=Transition(id=transition)),
-        ).success
-        for transition in transitions
-    ]
-
-
-def state(client: Client, node: str = '/hnr_planner') -> str:
-    """Return the name of the node's state."""
-    answer = client.call(GetState, f'{node}/get_state', GetState.Request())
-    return answer.current_state.label
 
 
 def outcome(client: Client) -> Outcome:

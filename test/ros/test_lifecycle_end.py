@@ -9,7 +9,7 @@ from importlib.util import find_spec
 from pathlib import Path
 import signal
 from test.ros.harness import Client, MANY, node_process, NodeProcess
-from test.ros.test_lifecycle import (
+from test.ros.transitions import (
     ACTIVATE,
     ACTIVE,
     change,

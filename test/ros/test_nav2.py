@@ -14,7 +14,7 @@ from test.ros.harness import (
     two_rooms,
     until,
 )
-from test.ros.test_msg_docs import examples, fill, OFFICE
+from test.ros.one_node.test_msg_docs import examples, fill, OFFICE
 from typing import Any
 
 from action_msgs.msg import GoalStatus

@@ -18,7 +18,7 @@ from test.ros.soak.callers import Caller, callers
 from test.ros.soak.effort import EFFORT
 from test.ros.soak.judge import World
 from test.ros.soak.worlds import END, LONG, plan_request, rooms, START
-from test.ros.test_lifecycle import change, state, WAY_TO
+from test.ros.transitions import change, state, WAY_TO
 import time
 
 import numpy as np

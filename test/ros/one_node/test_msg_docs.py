@@ -22,7 +22,7 @@ from rclpy.action import get_action_server_names_and_types_by_node
 from std_srvs.srv import Trigger
 import yaml
 
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[3]
 PAGES = {path.stem: path.read_text() for path in sorted((ROOT / 'msg_docs').glob('*.md'))}
 INDEX = PAGES.pop('README')
 OFFICE = ROOT / 'config' / 'maps' / 'office.yaml'

@@ -6,7 +6,7 @@ import subprocess
 import sys
 from test.ros.harness import node_process, NodeProcess
 
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[3]
 
 
 def test_the_client_gets_a_path_and_a_reason(planner: NodeProcess, tmp_path: Path) -> None:
