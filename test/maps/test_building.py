@@ -78,15 +78,15 @@ def test_margin_around_the_building_is_unknown_but_for_streaks(made: OccupancyMa
 
 
 def test_seed_decides_the_map() -> None:
-    first, again, other = (building(seed, resolution=0.1).data for seed in (2, 2, 3))
+    first, again, other = (building(seed, resolution=0.25).data for seed in (2, 2, 3))
     assert np.array_equal(first, again)
     assert not np.array_equal(first, other)
 
 
 def test_resolution_and_margin() -> None:
-    coarse = building(1, resolution=0.1, margin=1.0)
-    assert coarse.data.shape == (270, 420)
-    assert (coarse.resolution, coarse.origin) == (0.1, (-1.0, -1.0, 0.0))
+    coarse = building(1, resolution=0.25, margin=1.0)
+    assert coarse.data.shape == (108, 168)
+    assert (coarse.resolution, coarse.origin) == (0.25, (-1.0, -1.0, 0.0))
 
 
 def test_sample_map_is_what_the_generator_writes(tmp_path: Path) -> None:
