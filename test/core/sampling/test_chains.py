@@ -152,6 +152,7 @@ def test_distances_go_along_with_the_chain(name: str, walk):
         assert_cache_is_right(space, chains)
 
 
+@pytest.mark.interpreted
 @EACH_POLYTOPE
 def test_chords_from_memory_are_those_of_the_space(name: str):
     space, start = SPACES[name]
@@ -198,6 +199,7 @@ def test_counts_tell_steps_and_moves():
     assert abs(2200 - chains.moves - stayed) <= 1
 
 
+@pytest.mark.interpreted
 @pytest.mark.parametrize('segment_visible', [True, False])
 def test_a_ball_walk_with_steps_too_long_is_stuck(segment_visible: bool):
     walk = BallWalk(1e4, segment_visible=segment_visible)
@@ -205,6 +207,7 @@ def test_a_ball_walk_with_steps_too_long_is_stuck(segment_visible: bool):
         sample(HOLED, (0.1, 0.1, 0.1), 1, thin=2000, walk=walk, seed=1)
 
 
+@pytest.mark.interpreted
 @pytest.mark.parametrize('walk', ['hit_and_run', 'coordinate_hit_and_run'])
 def test_a_chain_between_walls_that_numbers_do_not_resolve_is_stuck(walk: str):
     """Between the slab's faces lies one number; along them there would be room."""
