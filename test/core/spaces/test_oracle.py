@@ -61,6 +61,7 @@ def test_a_function_in_python_and_the_same_compiled_give_the_same_walk():
     np.testing.assert_array_equal(*draws)
 
 
+@pytest.mark.interpreted
 def test_a_wall_is_seen_when_it_is_thicker_than_the_resolution():
     """One that is thinner may be missed: here it is, between two points that are asked for."""
     for wall, is_seen in ((0.0101, True), (0.005, False)):

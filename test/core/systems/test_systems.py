@@ -17,6 +17,8 @@ from hnr_planner.core.systems.primitives import contact
 import numpy as np
 import pytest
 
+pytestmark = pytest.mark.interpreted
+
 SYSTEMS: list[System] = [
     DoubleIntegrator(dim=2, max_acceleration=2.0, max_speed=3.0),
     Car(max_acceleration=2.0, max_speed=3.0, max_curvature=1.5),

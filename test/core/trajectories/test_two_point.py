@@ -8,6 +8,8 @@ from hnr_planner.core.trajectories.two_point import connect, empty_connection
 import numpy as np
 import pytest
 
+pytestmark = pytest.mark.interpreted
+
 SYSTEM = DoubleIntegrator(max_acceleration=1.5, max_speed=2.0)
 
 

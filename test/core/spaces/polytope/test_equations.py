@@ -66,6 +66,7 @@ def test_equal_bounds_are_an_equation():
     assert np.ptp(draws, axis=0)[[0, 2]].min() > 0.5
 
 
+@pytest.mark.interpreted
 def test_points_directions_and_motions_off_the_plane_are_not_free():
     space = PolytopeSpace(a_eq=[[1.0, 1.0, 1.0]], b_eq=1.0, lower=0.0)
     x = np.full(3, 1 / 3)
