@@ -1,4 +1,4 @@
-"""Parameters of tests that belong to the sweeps: further cases of what others test already."""
+"""Parameters of tests that belong to the sweeps: further cases of what `make test` has already."""
 
 from collections.abc import Collection, Iterable
 from typing import Any
