@@ -13,6 +13,7 @@ import gc
 import os
 import subprocess
 import sys
+from test.sweeps import IN_FULL
 from typing import Any
 
 from hnr_planner.core import warm_up
@@ -22,7 +23,7 @@ import pytest
 
 # Processes that tests start wait for machine code, unless a test says otherwise.
 MODE = os.environ.setdefault(modes.VARIABLE, 'compiled')
-MARKS_COUNT = MODE == 'compiled' and not os.environ.get('HNR_COMPILE_ALL')
+MARKS_COUNT = MODE == 'compiled' and not IN_FULL
 # Workers collect, and some begin, while all that most tests need is being compiled elsewhere.
 modes.set_mode('interpreted')
 # Set before the first message class is imported.

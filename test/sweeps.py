@@ -1,9 +1,13 @@
 """Parameters of tests that belong to the sweeps: further cases of what `make test` has already."""
 
 from collections.abc import Collection, Iterable
+import os
 from typing import Any
 
 import pytest
+
+#: Whether all tests run as machine code, on full inputs, as `make compiled` runs them.
+IN_FULL = bool(os.environ.get('HNR_COMPILE_ALL'))
 
 
 def sweep(*values: Any, name: str | None = None) -> Any:

@@ -4,8 +4,8 @@ The laws of the primitives that composed spaces are made of, held on every compi
 ``first_entry`` is held against points along the line: nothing is free before it, something after.
 """
 
-import os
 from test.laws.test_space_laws import random_points, rounding, size, tolerance
+from test.sweeps import IN_FULL
 from typing import NamedTuple
 
 from hnr_planner.core.kernels.kernel import interpreted, kernel
@@ -20,7 +20,7 @@ import numpy as np
 import pytest
 
 #: Lines, random points, and points along a line; interpreted, most of the time is theirs.
-N, SCATTERED, ALONG = (300, 6000, 400) if 'HNR_COMPILE_ALL' in os.environ else (150, 1200, 100)
+N, SCATTERED, ALONG = (300, 6000, 400) if IN_FULL else (150, 1200, 100)
 
 
 class Line(NamedTuple):

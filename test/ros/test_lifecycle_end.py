@@ -22,6 +22,7 @@ from test.ros.transitions import (
     UNCONFIGURED,
     WAY_TO,
 )
+from test.sweeps import sweep
 
 import pytest
 from rclpy.duration import Duration
@@ -97,7 +98,7 @@ def test_manager_resets_the_node_that_ends_under_its_bond(
 @pytest.mark.parametrize(
     ('where', 'number'),
     [
-        pytest.param(UNCONFIGURED, signal.SIGINT, marks=pytest.mark.sweep),
+        sweep(UNCONFIGURED, signal.SIGINT),
         (INACTIVE, signal.SIGTERM),
         (FINALIZED, signal.SIGINT),
     ],

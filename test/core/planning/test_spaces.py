@@ -2,10 +2,9 @@
 
 from collections.abc import Callable
 from functools import cache
-import os
 from test.core.planning.searches import plan
 from test.dense_check import collisions
-from test.sweeps import sweep
+from test.sweeps import IN_FULL, sweep
 from typing import NamedTuple
 
 from hnr_planner.core import (
@@ -200,7 +199,7 @@ SCENES = {
     'tables': cache(tables),
 }
 #: Seeds of the searches; interpreted, one of them takes less time than the kernels to compile.
-SEEDS = range(3) if 'HNR_COMPILE_ALL' in os.environ else range(1)
+SEEDS = range(3) if IN_FULL else range(1)
 EVERY_PLANNER = ('balls, 2-D', 'balls, 3-D', 'balls, 6-D', 'star')
 #: Of these, what every planner does is a sweep.
 FURTHER = ('balls, 2-D', 'balls, 6-D', 'star')

@@ -12,6 +12,7 @@ from test.regions import (
     Region,
     UnionRegion,
 )
+from test.sweeps import sweep
 from typing import NamedTuple
 
 from hnr_planner.core import (
@@ -134,4 +135,4 @@ FURTHER = ('hall and dome', 'court with pillars', 'banana, 3-D', 'stone, 3-D')
 
 def marked(name: str, *values: object, further: Collection[str] = FURTHER) -> object:
     """Return a parameter that belongs to the sweeps if its set is one of ``further``."""
-    return pytest.param(name, *values, marks=[pytest.mark.sweep] * (name in further))
+    return sweep(name, *values) if name in further else pytest.param(name, *values)

@@ -54,7 +54,7 @@ FURTHER = ('difference',)
 EACH_SPACE = pytest.mark.parametrize(
     ('space', 'start'),
     [
-        pytest.param(*values, id=name, marks=[pytest.mark.sweep] * (name in FURTHER))
+        sweep(*values, name=name) if name in FURTHER else pytest.param(*values, id=name)
         for name, values in SPACES.items()
     ],
 )

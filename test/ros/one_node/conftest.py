@@ -1,7 +1,7 @@
 """The node that all files of this folder share; each finds it as if it had just started."""
 
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import closing
 from dataclasses import fields
 from test.ros.harness import Client, node_process, NodeProcess
 from test.ros.transitions import ACTIVATE, change, CLEANUP, CONFIGURE, DEACTIVATE
@@ -24,23 +24,13 @@ def shared_node(tmp_path_factory: pytest.TempPathFactory) -> Iterator[NodeProces
 def planner(shared_node: NodeProcess) -> Iterator[NodeProcess]:
     """Return the node, and let it forget afterwards what a module brought it to."""
     shared_node.begin_log()
-    with a_client() as client:
+    with closing(Client()) as client:
         usual = client.get_parameters(*NAMES)
     yield shared_node
-    with a_client() as client:
+    with closing(Client()) as client:
         # This ends all searches, and the node forgets its map, zones, transforms and last path.
         assert change(client, DEACTIVATE, CLEANUP) == [True, True]
         values = zip(NAMES, usual, client.get_parameters(*NAMES), strict=True)
         changed = {name: before for name, before, now in values if now != before}
         assert all(answer.successful for answer in client.set_parameters(**changed))
         assert change(client, CONFIGURE, ACTIVATE) == [True, True]
-
-
-@contextmanager
-def a_client() -> Iterator[Client]:
-    """Run a client for the length of a ``with`` block."""
-    client = Client()
-    try:
-        yield client
-    finally:
-        client.close()

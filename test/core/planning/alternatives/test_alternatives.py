@@ -255,7 +255,7 @@ def test_three_blocks_have_three_paths_and_more(seed: int):
     assert len(result.paths) == 3
 
 
-@pytest.mark.parametrize('first', [0, pytest.param(N_MAPS, marks=pytest.mark.sweep)])
+@pytest.mark.parametrize('first', [0, sweep(N_MAPS)])
 def test_they_are_the_shortest_of_all_classes(first: int):
     """On small maps with up to a dozen islands, against the full visibility graph."""
     seeds = range(first, first + N_MAPS)

@@ -8,7 +8,7 @@ import sys
 from test.brute_force import path_collisions
 from test.core.planning.searches import plan
 from test.laws import maps
-from test.sweeps import sweep
+from test.sweeps import IN_FULL, sweep
 
 from hnr_planner.core import (
     BallSpace,
@@ -190,7 +190,7 @@ def balls(dim: int) -> DifferenceSpace:
 
 
 #: Seeds of the searches; interpreted, they take less time than their kernels to compile.
-SEEDS = range(8) if 'HNR_COMPILE_ALL' in os.environ else range(2)
+SEEDS = range(8) if IN_FULL else range(2)
 
 
 @pytest.mark.interpreted

@@ -8,10 +8,9 @@ interpreted, on a small map and with few draws.
 
 from concurrent.futures import ThreadPoolExecutor
 from functools import cache
-import os
 from test.brute_force import path_collisions
 from test.laws import maps
-from test.sweeps import sweep, sweep_but
+from test.sweeps import IN_FULL, sweep, sweep_but
 import threading
 from typing import Any
 
@@ -43,7 +42,7 @@ Floats = NDArray[np.float64]
 
 #: Rows and columns of the map and of its rooms, draws of its roadmap, requests, other maps.
 SHAPE, N_DRAWS, N_REQUESTS, N_EXAMPLES = (
-    ((60, 80, 10), 4096, 50, 10) if 'HNR_COMPILE_ALL' in os.environ else ((30, 40, 10), 128, 15, 3)
+    ((60, 80, 10), 4096, 50, 10) if IN_FULL else ((30, 40, 10), 128, 15, 3)
 )
 
 
